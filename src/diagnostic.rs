@@ -1,0 +1,162 @@
+//! What the compiler has to say about a source: plain data, no terminal.
+
+use crate::span::Span;
+
+/// Whether the described picture cannot be made, or is probably not the one meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The picture cannot be made.
+    Error,
+    /// The picture can be made, and is probably not the one meant.
+    Warning,
+}
+
+macro_rules! codes {
+    ($($code:ident $title:literal,)*) => {
+        /// What a diagnostic is about. The letter tells the severity, the first two digits the group.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[allow(missing_docs)]
+        pub enum Code { $($code,)* }
+
+        impl Code {
+            /// Every code the compiler can give, in order.
+            pub const ALL: &'static [Code] = &[$(Code::$code,)*];
+
+            /// The code as written, such as `E0203`.
+            pub fn as_str(self) -> &'static str {
+                match self { $(Code::$code => stringify!($code),)* }
+            }
+
+            /// What it is about, in a few words.
+            pub fn title(self) -> &'static str {
+                match self { $(Code::$code => $title,)* }
+            }
+        }
+    };
+}
+
+codes! {
+    E0001 "unexpected text",
+    E0002 "unclosed bracket, string or comment",
+    E0003 "`=` or `;` in place of `:` or `,`",
+    E0004 "space before a unit",
+    E0005 "missing `:`",
+    E0006 "angle brackets around a triple",
+    E0007 "`a..b` in place of `a to b`",
+    E0008 "malformed number, string or colour",
+    E0009 "not UTF-8 text",
+    E0101 "unknown name",
+    E0102 "duplicate name",
+    E0103 "shadowed name",
+    E0104 "definitions in a cycle",
+    W0106 "unused name",
+    E0201 "type mismatch",
+    E0202 "missing unit",
+    E0203 "wrong dimension",
+    E0204 "angle without a unit",
+    E0205 "number as a colour",
+    E0206 "whole number wanted",
+    E0207 "units of a root or a sum",
+    E0301 "unknown field",
+    E0302 "missing field",
+    E0303 "repeated field or block",
+    E0304 "conflicting fields",
+    E0305 "not a thing of the scene",
+    E0401 "value out of range",
+    E0402 "reflects more than it receives",
+    E0403 "degenerate shape",
+    E0404 "camera looks at itself",
+    E0406 "over a limit",
+    E0407 "value that is not finite",
+    W0601 "camera inside a solid",
+    W0701 "noise target not reached",
+}
+
+impl Code {
+    /// Error or warning, from the letter.
+    pub fn severity(self) -> Severity {
+        if self.as_str().starts_with('W') { Severity::Warning } else { Severity::Error }
+    }
+}
+
+/// A span with a few words about it; the words may be empty.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Label {
+    /// What is pointed at.
+    pub span: Span,
+    /// What is said of it.
+    pub text: String,
+}
+
+/// An edit that mends the slip by itself: replace each span by its text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fix {
+    /// Spans that do not overlap, each with what stands there afterwards.
+    pub edits: Vec<(Span, String)>,
+}
+
+/// One error or warning.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// What it is about.
+    pub code: Code,
+    /// One sentence without a full stop.
+    pub message: String,
+    /// The place.
+    pub primary: Label,
+    /// Further places. No label overlaps another: [`Diagnostic::label`] sees to it.
+    pub labels: Vec<Label>,
+    /// How to mend it.
+    pub help: Option<String>,
+    /// The mend as an edit, where it can be applied blindly.
+    pub fix: Option<Fix>,
+    /// The uses that led to the place, outermost first.
+    pub uses: Vec<Span>,
+}
+
+impl Diagnostic {
+    /// A diagnostic at a place, with nothing further said.
+    pub fn new(code: Code, message: impl Into<String>, span: Span) -> Diagnostic {
+        let primary = Label { span, text: String::new() };
+        Diagnostic { code, message: message.into(), primary, labels: vec![], help: None, fix: None, uses: vec![] }
+    }
+
+    /// Says something of the primary place.
+    pub fn at(mut self, text: impl Into<String>) -> Diagnostic {
+        self.primary.text = text.into();
+        self
+    }
+
+    /// Points at a further place; one that overlaps an earlier label is left out.
+    pub fn label(mut self, span: Span, text: impl Into<String>) -> Diagnostic {
+        let overlaps = |other: Span| {
+            other.source == span.source && other.start < span.end.max(span.start + 1) && span.start < other.end
+        };
+        if !overlaps(self.primary.span) && !self.labels.iter().any(|label| overlaps(label.span)) {
+            self.labels.push(Label { span, text: text.into() });
+        }
+        self
+    }
+
+    /// Says how to mend it.
+    pub fn help(mut self, help: impl Into<String>) -> Diagnostic {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// Adds an edit that mends it.
+    pub fn fix(mut self, span: Span, replacement: impl Into<String>) -> Diagnostic {
+        self.fix.get_or_insert(Fix { edits: vec![] }).edits.push((span, replacement.into()));
+        self
+    }
+
+    /// Error or warning.
+    pub fn severity(&self) -> Severity {
+        self.code.severity()
+    }
+}
+
+/// Whether any of them is an error.
+pub fn any_errors(diagnostics: &[Diagnostic]) -> bool {
+    diagnostics.iter().any(|diagnostic| diagnostic.severity() == Severity::Error)
+}

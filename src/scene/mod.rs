@@ -1,0 +1,216 @@
+//! The scene: the picture with everything resolved, in its simplest form.
+//!
+//! What that means, and what a reader of it may rely on:
+//!
+//! - No names, units, prototypes, groups or defaults are left: every number is finite, in metres, radians and
+//!   watts, in world space; colours are linear RGB with sRGB's primaries; every reflectance is in [0, 1].
+//! - Things lie in flat vectors and refer to each other by typed ids that are in range.
+//! - A closed solid is oriented: its normals point out. Power has become radiance.
+//! - There is exactly one camera, and it looks somewhere. There may be no light at all.
+//! - [`Scene::hash`] is canonical: equal scenes have equal hashes, and anything that may change a bit of the
+//!   picture's radiance changes it. What only develops the film is in [`Develop`], outside the hash.
+
+pub mod shape;
+
+pub use crate::schema::{Filter, Tonemap};
+use crate::color::Rgb;
+use crate::math::{DVec2, DVec3};
+use serde::Serialize;
+pub use shape::Shape;
+
+/// A whole picture, ready to be traced.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Scene {
+    /// Every surface, glowing spheres of lights among them.
+    pub primitives: Vec<Primitive>,
+    /// Materials, each used by at least one primitive.
+    pub materials: Vec<Material>,
+    /// Lights that are no surface.
+    pub lights: Vec<Light>,
+    /// Where the picture is taken from.
+    pub camera: Camera,
+    /// How the picture is traced.
+    pub trace: Trace,
+    /// How the film becomes a picture.
+    #[serde(skip)]
+    pub develop: Develop,
+}
+
+/// Names a chain of uses in the table of origins that stands beside the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+pub struct OriginId(pub u32);
+
+/// Index into [`Scene::materials`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+pub struct MaterialId(pub u32);
+
+/// Index into [`Scene::primitives`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+pub struct PrimitiveId(pub u32);
+
+/// A surface with its material.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Primitive {
+    /// The surface.
+    pub shape: Shape,
+    /// What it is made of.
+    pub material: MaterialId,
+    /// Which place in the source put it here. Not part of the hash: moving text does not change the picture.
+    #[serde(skip)]
+    pub origin: OriginId,
+}
+
+/// What a surface does with light.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub enum Material {
+    /// Lambertian.
+    Diffuse {
+        /// Reflectance (albedo).
+        color: Rgb,
+    },
+    /// Perfect specular reflection, the same at every angle.
+    Mirror {
+        /// Reflectance.
+        color: Rgb,
+    },
+    /// Clear or frosted glass, water: refraction by Snell, reflection by Fresnel.
+    Dielectric {
+        /// Refractive index of the inside relative to the outside's vacuum, above 0.
+        ior: f64,
+        /// Absorption inside, per metre and channel (Beer–Lambert), 0 to infinity.
+        absorption: Rgb,
+        /// GGX α = perceptual roughness², in [0, 1]; 0 is smooth.
+        alpha: f64,
+    },
+    /// A conductor: GGX with Schlick's Fresnel.
+    Metal {
+        /// Reflectance at normal incidence.
+        color: Rgb,
+        /// GGX α in [0, 1]; 0 is a perfect mirror.
+        alpha: f64,
+    },
+    /// A dielectric coat over a Lambertian base, with internal reflection counted.
+    Plastic {
+        /// Reflectance (albedo) of the base.
+        color: Rgb,
+        /// Refractive index of the coat, at least 1.
+        ior: f64,
+        /// GGX α of the coat in [0, 1]; 0 is smooth.
+        alpha: f64,
+    },
+    /// Glows, and reflects nothing. A closed shape glows outwards, an open one on both sides.
+    Emitter {
+        /// Radiance in W/(m²·sr) a channel.
+        radiance: Rgb,
+    },
+}
+
+/// A light that is no surface.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub enum Light {
+    /// Radiates evenly from a point.
+    Point {
+        /// Where.
+        position: DVec3,
+        /// Radiant intensity in W/sr a channel.
+        intensity: Rgb,
+    },
+    /// A distant disc.
+    Sun {
+        /// Unit vector towards the centre of the disc.
+        direction: DVec3,
+        /// On a surface that faces it, in W/m² a channel.
+        irradiance: Rgb,
+        /// The disc's angular radius in radians, [0, π/2]; 0 is a point, and then not seen.
+        radius: f64,
+    },
+    /// The same radiance from everywhere beyond the scene. There is at most one.
+    Sky {
+        /// In W/(m²·sr) a channel.
+        radiance: Rgb,
+    },
+}
+
+/// A perspective camera with a thin lens. `right`, `up` and `forward` are unit vectors at right angles, with
+/// right × up = −forward.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Camera {
+    /// Centre of the lens.
+    pub position: DVec3,
+    /// To the right in the picture.
+    pub right: DVec3,
+    /// Upwards in the picture.
+    pub up: DVec3,
+    /// Into the picture.
+    pub forward: DVec3,
+    /// Half the width and half the height of the picture at distance 1: tangents of the half angles of view.
+    pub half_extent: DVec2,
+    /// Radius of the lens in metres; 0 is a pinhole.
+    pub lens_radius: f64,
+    /// Distance along `forward` of the plane that is sharp.
+    pub focus: f64,
+}
+
+/// How the picture is traced.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Trace {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// When a pixel has enough samples.
+    pub target: Target,
+    /// Scattering events of a path: 0 shows what glows, 1 adds direct light.
+    pub bounces: u32,
+    /// Whether light may come by a diffuse or rough surface before it is scattered to the camera.
+    pub indirect: bool,
+    /// Chooses the random numbers.
+    pub seed: u64,
+    /// Reconstruction filter of a pixel.
+    pub filter: Filter,
+}
+
+/// When a pixel has enough samples. Not part of the hash: more of them refine the same picture.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub enum Target {
+    /// So many samples a pixel, at least one.
+    Samples(u32),
+    /// Samples are doubled until the standard error of the displayed pixels is below this, as a ratio of white.
+    Noise(f64),
+}
+
+/// How radiance becomes a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Develop {
+    /// In stops, 0 maps radiance 1 to white; none is chosen from the scene.
+    pub exposure: Option<f64>,
+    /// The curve from scene to display.
+    pub tonemap: Tonemap,
+}
+
+impl Scene {
+    /// The canonical hash of everything that radiance depends on, but for the number of samples.
+    pub fn hash(&self) -> blake3::Hash {
+        struct Sink(blake3::Hasher);
+        impl postcard::ser_flavors::Flavor for Sink {
+            type Output = blake3::Hash;
+            fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
+                self.try_extend(&[byte])
+            }
+            fn try_extend(&mut self, bytes: &[u8]) -> postcard::Result<()> {
+                self.0.update(bytes);
+                Ok(())
+            }
+            fn finalize(self) -> postcard::Result<blake3::Hash> {
+                Ok(self.0.finalize())
+            }
+        }
+        let any = Trace { target: Target::Samples(0), ..self.trace };
+        let parts = (&self.primitives, &self.materials, &self.lights, &self.camera, any);
+        postcard::serialize_with_flavor(&parts, Sink(blake3::Hasher::new()))
+            .expect("the sink takes everything, and the scene has only sized parts")
+    }
+
+    /// The material of a primitive.
+    pub fn material(&self, primitive: &Primitive) -> &Material {
+        &self.materials[primitive.material.0 as usize]
+    }
+}

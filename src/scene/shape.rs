@@ -1,0 +1,346 @@
+//! Surfaces in world space, with what can be said of them without a ray: bounds, area, inside.
+
+use crate::math::{DAffine3, DMat3, DVec3, PI, cos, sin};
+use serde::Serialize;
+
+/// A surface. Normals point out of a closed solid; a plane's normal points out of the half-space it bounds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub enum Shape {
+    /// A ball.
+    Sphere {
+        /// Centre.
+        center: DVec3,
+        /// Radius, above 0.
+        radius: f64,
+    },
+    /// The points p with `normal`·(p − `point`) = 0.
+    Plane {
+        /// Any of its points.
+        point: DVec3,
+        /// Unit vector out of the solid half-space.
+        normal: DVec3,
+    },
+    /// A canonical quadric of object space, carried to the world by an affine map.
+    Quadric(Quadric),
+}
+
+/// A quadric surface. In object space it is the points with q(p) = 0 and `low` ≤ y ≤ `high`, where q is
+/// [`Form::q`], negative inside.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Quadric {
+    /// Which surface.
+    pub form: Form,
+    /// Object to world; invertible.
+    pub world_from_object: DAffine3,
+    /// The inverse.
+    pub object_from_world: DAffine3,
+    /// Lower end in object space's y; −∞ where it is not cut.
+    pub low: f64,
+    /// Upper end in object space's y; +∞ where it is not cut.
+    pub high: f64,
+    /// Whether finite ends are closed by flat caps, where the inside is.
+    pub capped: bool,
+}
+
+/// Canonical quadrics about the y axis of object space: q(p) = x² + z² + s·y² + k.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Form {
+    /// x² + y² + z² − 1: a ball that a stretching map has made an ellipsoid.
+    Ellipsoid,
+    /// x² + z² − y² − 1: a hyperboloid of one sheet.
+    OneSheet,
+    /// x² + z² − y² + 1: a hyperboloid of two sheets, tips at y = ±1.
+    TwoSheet,
+}
+
+impl Form {
+    /// The factor s of y² in q.
+    pub fn y_sign(self) -> f64 {
+        match self {
+            Form::Ellipsoid => 1.0,
+            Form::OneSheet | Form::TwoSheet => -1.0,
+        }
+    }
+
+    /// The constant k in q.
+    pub fn constant(self) -> f64 {
+        match self {
+            Form::Ellipsoid | Form::OneSheet => -1.0,
+            Form::TwoSheet => 1.0,
+        }
+    }
+
+    /// The quadratic function that is 0 on the surface and negative inside.
+    pub fn q(self, p: DVec3) -> f64 {
+        p.x * p.x + p.z * p.z + self.y_sign() * p.y * p.y + self.constant()
+    }
+
+    /// Half the gradient of q: along the normal, outwards.
+    pub fn half_gradient(self, p: DVec3) -> DVec3 {
+        DVec3::new(p.x, self.y_sign() * p.y, p.z)
+    }
+
+    /// The squared radius of the circle where the surface meets the plane at this height: negative where it
+    /// does not.
+    pub fn radius_squared(self, y: f64) -> f64 {
+        -self.constant() - self.y_sign() * y * y
+    }
+}
+
+/// An axis-aligned box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Least corner.
+    pub min: DVec3,
+    /// Greatest corner.
+    pub max: DVec3,
+}
+
+impl Bounds {
+    /// Contains nothing; the identity of [`Bounds::union`].
+    pub const EMPTY: Bounds = Bounds { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+
+    /// The smallest box around both.
+    pub fn union(self, other: Bounds) -> Bounds {
+        Bounds { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// The point in the middle.
+    pub fn center(self) -> DVec3 {
+        0.5 * (self.min + self.max)
+    }
+
+    /// Edge lengths.
+    pub fn size(self) -> DVec3 {
+        self.max - self.min
+    }
+
+    /// Whether it contains no point.
+    pub fn is_empty(self) -> bool {
+        self.min.cmpgt(self.max).any()
+    }
+
+    /// Twice the area of its surface over two: the measure of the surface-area heuristic.
+    pub fn half_area(self) -> f64 {
+        let size = self.size();
+        size.x * size.y + size.y * size.z + size.z * size.x
+    }
+}
+
+impl Shape {
+    /// The box around it, or none for a surface without end.
+    pub fn bounds(&self) -> Option<Bounds> {
+        match self {
+            Shape::Sphere { center, radius } => {
+                Some(Bounds { min: *center - *radius, max: *center + *radius })
+            }
+            Shape::Plane { .. } => None,
+            Shape::Quadric(quadric) => quadric.bounds(),
+        }
+    }
+
+    /// Whether a point lies in the solid. A surface that encloses nothing has no inside.
+    pub fn contains(&self, p: DVec3) -> bool {
+        match self {
+            Shape::Sphere { center, radius } => p.distance_squared(*center) < radius * radius,
+            Shape::Plane { point, normal } => normal.dot(p - *point) < 0.0,
+            Shape::Quadric(quadric) => {
+                let o = quadric.object_from_world.transform_point3(p);
+                quadric.is_closed() && quadric.low < o.y && o.y < quadric.high && quadric.form.q(o) < 0.0
+            }
+        }
+    }
+
+    /// Whether it bounds a solid, so that it has an inside and an outside.
+    pub fn is_closed(&self) -> bool {
+        match self {
+            Shape::Sphere { .. } | Shape::Plane { .. } => true,
+            Shape::Quadric(quadric) => quadric.is_closed(),
+        }
+    }
+
+    /// The area in m² of one side of the surface, caps included; infinite for a surface without end.
+    pub fn area(&self) -> f64 {
+        match self {
+            Shape::Sphere { radius, .. } => 4.0 * PI * radius * radius,
+            Shape::Plane { .. } => f64::INFINITY,
+            Shape::Quadric(quadric) => quadric.area(),
+        }
+    }
+}
+
+impl Quadric {
+    /// Whether it bounds a solid: every finite end has its cap.
+    pub fn is_closed(&self) -> bool {
+        let uncut = self.low == f64::NEG_INFINITY && self.high == f64::INFINITY;
+        self.form == Form::Ellipsoid || self.capped || uncut
+    }
+
+    /// The stretches of object space's y that the surface covers: two for the sheets of a two-sheet
+    /// hyperboloid, else one. A stretch may be empty, and may be endless.
+    pub fn stretches(&self) -> [[f64; 2]; 2] {
+        const NOTHING: [f64; 2] = [0.0, 0.0];
+        match self.form {
+            Form::Ellipsoid => [[self.low.max(-1.0), self.high.min(1.0)], NOTHING],
+            Form::OneSheet => [[self.low, self.high], NOTHING],
+            Form::TwoSheet => [[self.low, self.high.min(-1.0)], [self.low.max(1.0), self.high]],
+        }
+        .map(|[low, high]| if low < high { [low, high] } else { NOTHING })
+    }
+
+    /// The point of the side at a height and an angle about the y axis, in object space.
+    pub fn side_point(&self, y: f64, angle: f64) -> DVec3 {
+        let r = self.form.radius_squared(y).max(0.0).sqrt();
+        DVec3::new(r * cos(angle), y, r * sin(angle))
+    }
+
+    /// World area of the side for each unit of object y and radian at a point of object space. In object
+    /// space it is half the length of the gradient, for each of the forms; a map M carries an area element
+    /// n dA to det(M) M⁻ᵀ n dA.
+    pub fn side_density(&self, p: DVec3) -> f64 {
+        let m = self.world_from_object.matrix3;
+        let inverse_transpose = self.object_from_world.matrix3.transpose();
+        m.determinant().abs() * (inverse_transpose * self.form.half_gradient(p)).length()
+    }
+
+    /// World area of both caps together, or 0 without caps.
+    pub fn cap_areas(&self) -> [f64; 2] {
+        let m = self.world_from_object.matrix3;
+        let unit = m.x_axis.cross(m.z_axis).length();
+        [self.low, self.high].map(|y| {
+            let radius_squared = self.form.radius_squared(y);
+            if self.capped && y.is_finite() && radius_squared > 0.0 { PI * radius_squared * unit } else { 0.0 }
+        })
+    }
+
+    /// World area of the side between two heights of object space, by the trapezoid rule in the angle (which
+    /// converges exponentially for a periodic integrand) and Gauss's rule in panels of y.
+    pub fn side_area(&self, low: f64, high: f64) -> f64 {
+        if high - low == f64::INFINITY {
+            return f64::INFINITY;
+        }
+        const PANELS: usize = 64;
+        const ANGLES: usize = 128;
+        /// Nodes and weights of Gauss–Legendre with three points on [−1, 1].
+        const GAUSS: [(f64, f64); 3] =
+            [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
+        let half = 0.5 * (high - low) / PANELS as f64;
+        let mut sum = 0.0;
+        for panel in 0..PANELS {
+            let middle = low + (2.0 * panel as f64 + 1.0) * half;
+            for (node, weight) in GAUSS {
+                for step in 0..ANGLES {
+                    let angle = 2.0 * PI * step as f64 / ANGLES as f64;
+                    sum += weight * self.side_density(self.side_point(middle + node * half, angle));
+                }
+            }
+        }
+        sum * half * 2.0 * PI / ANGLES as f64
+    }
+
+    fn area(&self) -> f64 {
+        let side: f64 = self.stretches().iter().map(|[low, high]| self.side_area(*low, *high)).sum();
+        side + self.cap_areas().iter().sum::<f64>()
+    }
+
+    /// The tight box: on each world axis the greatest value of a linear function on the surface.
+    fn bounds(&self) -> Option<Bounds> {
+        let stretches = self.stretches();
+        if stretches.iter().flatten().any(|y| y.is_infinite()) {
+            return None;
+        }
+        let rows: DMat3 = self.world_from_object.matrix3.transpose();
+        let support = |direction: DVec3| {
+            stretches
+                .iter()
+                .filter(|[low, high]| low < high)
+                .map(|[low, high]| self.support(direction, *low, *high))
+                .fold(f64::NEG_INFINITY, f64::max)
+        };
+        let max = DVec3::new(support(rows.x_axis), support(rows.y_axis), support(rows.z_axis));
+        let min = -DVec3::new(support(-rows.x_axis), support(-rows.y_axis), support(-rows.z_axis));
+        let origin = self.world_from_object.translation;
+        Some(Bounds { min: origin + min, max: origin + max })
+    }
+
+    /// The greatest g·p over the side between two heights, in object space. About the axis the best point
+    /// leans along g, so it is the greatest g.y·y + |g.xz|·r(y): at an end, or where its slope vanishes.
+    fn support(&self, g: DVec3, low: f64, high: f64) -> f64 {
+        let radial = (g.x * g.x + g.z * g.z).sqrt();
+        let value = |y: f64| g.y * y + radial * self.form.radius_squared(y).max(0.0).sqrt();
+        let stationary = match self.form {
+            Form::Ellipsoid => g.y / (g.y * g.y + radial * radial).sqrt(),
+            // r is concave on each sheet: the best point lies where the sheet faces g, if it does.
+            Form::TwoSheet => -g.y / (g.y * g.y - radial * radial).sqrt(),
+            // r is convex: the best point is at an end.
+            Form::OneSheet => f64::NAN,
+        };
+        let inside = low < stationary && stationary < high;
+        let best = value(low).max(value(high));
+        if inside { best.max(value(stationary)) } else { best }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn quadric(form: Form, low: f64, high: f64, map: DAffine3) -> Quadric {
+        Quadric {
+            form,
+            world_from_object: map,
+            object_from_world: map.inverse(),
+            low,
+            high,
+            capped: true,
+        }
+    }
+
+    #[test]
+    fn areas_match_closed_forms() {
+        let stretch = DAffine3::from_scale(DVec3::new(2.0, 3.0, 2.0));
+        // A prolate spheroid with semi-axes a = 2, c = 3: 2πa²(1 + c/(ae)·asin e), e² = 1 − a²/c².
+        let e = (1.0f64 - 4.0 / 9.0).sqrt();
+        let spheroid = 2.0 * PI * 4.0 * (1.0 + 3.0 / (2.0 * e) * crate::math::asin(e));
+        let area = quadric(Form::Ellipsoid, f64::NEG_INFINITY, f64::INFINITY, stretch).area();
+        assert!((area / spheroid - 1.0).abs() < 1e-6, "{area} {spheroid}");
+        // The side of x² + z² − y² = 1 between ±h: 2π ∫ √(1 + 2y²) dy.
+        let h = 1.5f64;
+        let s = 2.0f64.sqrt();
+        let asinh = crate::math::ln(s * h + (1.0 + 2.0 * h * h).sqrt());
+        let side = 2.0 * PI * (h * (1.0 + 2.0 * h * h).sqrt() + asinh / s);
+        let caps = 2.0 * PI * (1.0 + h * h);
+        let area = quadric(Form::OneSheet, -h, h, DAffine3::IDENTITY).area();
+        assert!((area / (side + caps) - 1.0).abs() < 1e-9, "{area}");
+    }
+
+    #[test]
+    fn bounds_are_tight() {
+        let turn = DMat3::from_cols(
+            DVec3::new(0.6, 0.8, 0.0),
+            DVec3::new(-0.8, 0.6, 0.0),
+            DVec3::new(0.0, 0.3, 1.0),
+        );
+        let map = DAffine3::from_mat3_translation(turn, DVec3::new(5.0, -2.0, 1.0));
+        for form in [Form::Ellipsoid, Form::OneSheet, Form::TwoSheet] {
+            let quadric = quadric(form, -1.4, 2.0, map);
+            let bounds = Shape::Quadric(quadric).bounds().unwrap();
+            let mut found = Bounds::EMPTY;
+            for [low, high] in quadric.stretches() {
+                for i in 0..=2000 {
+                    for j in 0..500 {
+                        let y = low + (high - low) * f64::from(i) / 2000.0;
+                        let p = quadric.side_point(y, f64::from(j) * 2.0 * PI / 500.0);
+                        if low < high {
+                            let p = map.transform_point3(p);
+                            found = found.union(Bounds { min: p, max: p });
+                        }
+                    }
+                }
+            }
+            assert!(found.min.cmpge(bounds.min - 1e-9).all() && found.max.cmple(bounds.max + 1e-9).all());
+            assert!((found.min - bounds.min).abs().max_element() < 1e-3, "{form:?} {found:?} {bounds:?}");
+            assert!((found.max - bounds.max).abs().max_element() < 1e-3, "{form:?} {found:?} {bounds:?}");
+        }
+    }
+}

@@ -1,0 +1,576 @@
+//! The one table of kinds and their fields: types, units, defaults, ranges and documentation.
+//!
+//! Checking, lowering, messages and the reference page all read it, and no field is named anywhere else: the
+//! [`kinds!`] table also yields a module a kind (`sphere::RADIUS`, …) with a typed key a field.
+
+use crate::units::{self, Dim};
+use std::marker::PhantomData;
+
+/// What a kind is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Category {
+    /// A surface of the picture; takes the fields of [`PLACED`].
+    Shape,
+    /// What a surface is made of.
+    Material,
+    /// A source of light that is no shape.
+    Light,
+    /// Holds other things.
+    Group,
+    /// Says how the picture is taken.
+    Block,
+}
+
+/// A kind of thing: what may stand before `{`.
+#[derive(Debug)]
+pub struct Kind {
+    /// As written.
+    pub name: &'static str,
+    /// What it is for.
+    pub category: Category,
+    /// One or more sentences.
+    pub doc: &'static str,
+    /// Fields of its own, in the order of the reference.
+    pub fields: &'static [Field],
+    /// What must hold between the fields.
+    pub rules: &'static [Rule],
+}
+
+/// One field of a kind.
+#[derive(Debug)]
+pub struct Field {
+    /// As written.
+    pub name: &'static str,
+    /// What its value must be.
+    pub ty: FieldType,
+    /// What holds when it is not given.
+    pub default: Preset,
+    /// What its value must lie in, in base units; a tuple's components each.
+    pub range: Range,
+    /// One or more sentences.
+    pub doc: &'static str,
+}
+
+/// What a field's value must be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FieldType {
+    /// A quantity of this dimension; a number where there is none.
+    Scalar(Dim),
+    /// A whole number.
+    Int,
+    /// `true` or `false`.
+    Bool,
+    /// A linear colour.
+    Color,
+    /// So many quantities of one dimension.
+    Tuple(usize, Dim),
+    /// So many whole numbers.
+    IntTuple(usize),
+    /// A placement.
+    Transform,
+    /// A value whose kind is of this category.
+    Made(Category),
+    /// A value of this kind, which may also be written as a statement inside.
+    Part(&'static str),
+    /// A thing that stands in the scene and has bounds.
+    Target,
+    /// The name of a thing of this kind in the scene.
+    Named(&'static str),
+    /// One of these words.
+    Choice(&'static [Word]),
+    /// Any of these.
+    OneOf(&'static [FieldType]),
+}
+
+/// A bare word that a field understands.
+#[derive(Debug, PartialEq)]
+pub struct Word {
+    /// As written.
+    pub name: &'static str,
+    /// What it means.
+    pub doc: &'static str,
+}
+
+/// What holds when a field is not given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Preset {
+    /// It must be given.
+    Required,
+    /// It may be absent; the words say what then happens.
+    Absent(&'static str),
+    /// This expression of the language.
+    Value(&'static str),
+}
+
+/// An interval of numbers in base units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// Least value.
+    pub low: f64,
+    /// Greatest value.
+    pub high: f64,
+    /// Whether `low` itself is refused.
+    pub above: bool,
+}
+
+const ANY: Range = Range { low: f64::NEG_INFINITY, high: f64::INFINITY, above: false };
+const POSITIVE: Range = Range { low: 0.0, high: f64::INFINITY, above: true };
+const NOT_NEGATIVE: Range = Range { low: 0.0, high: f64::INFINITY, above: false };
+
+const fn within(low: f64, high: f64) -> Range {
+    Range { low, high, above: false }
+}
+
+impl Range {
+    /// Whether a value is allowed.
+    pub fn contains(self, value: f64) -> bool {
+        (if self.above { value > self.low } else { value >= self.low }) && value <= self.high
+    }
+}
+
+/// What must hold between the fields of a kind.
+#[derive(Debug)]
+pub enum Rule {
+    /// Exactly one of them is given.
+    ExactlyOne(&'static [&'static str]),
+    /// The one excludes each of the others.
+    Excludes(&'static str, &'static [&'static str]),
+    /// All are given, or none is.
+    Together(&'static [&'static str]),
+    /// The one is given only beside the other.
+    Needs(&'static str, &'static str),
+}
+
+/// Index of a kind in [`KINDS`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct KindId(pub u8);
+
+impl KindId {
+    /// The kind itself.
+    pub fn get(self) -> &'static Kind {
+        &KINDS[self.0 as usize]
+    }
+
+    /// All its fields: its own, then those every shape or group takes.
+    pub fn fields(self) -> impl Iterator<Item = &'static Field> + Clone {
+        self.get().fields.iter().chain(self.common())
+    }
+
+    /// How many fields [`KindId::fields`] has.
+    pub fn field_count(self) -> usize {
+        self.get().fields.len() + self.common().len()
+    }
+
+    /// The field at an index of [`KindId::fields`].
+    pub fn field(self, index: usize) -> &'static Field {
+        let own = self.get().fields;
+        own.get(index).unwrap_or_else(|| &self.common()[index - own.len()])
+    }
+
+    /// The index in [`KindId::fields`] of the field of that name.
+    pub fn field_index(self, name: &str) -> Option<usize> {
+        self.fields().position(|field| field.name == name)
+    }
+
+    fn common(self) -> &'static [Field] {
+        if matches!(self.get().category, Category::Shape | Category::Group) { PLACED } else { &[] }
+    }
+}
+
+/// Finds a kind by name.
+pub fn kind(name: &str) -> Option<KindId> {
+    KINDS.iter().position(|kind| kind.name == name).map(|index| KindId(index as u8))
+}
+
+/// Finds a field's place in a kind, and says by its type how to read the value.
+pub struct Key<T> {
+    place: Place,
+    ty: PhantomData<T>,
+}
+
+#[derive(Clone, Copy)]
+enum Place {
+    Own(usize),
+    Common(usize),
+}
+
+impl<T> Key<T> {
+    /// The index in [`KindId::fields`] of a kind that has the field.
+    pub fn index(&self, kind: KindId) -> usize {
+        match self.place {
+            Place::Own(index) => index,
+            Place::Common(index) => kind.get().fields.len() + index,
+        }
+    }
+}
+
+/// A type of fields, known when this is compiled.
+pub trait Typed {
+    /// The same as a value.
+    const TYPE: FieldType;
+}
+
+macro_rules! types {
+    ($($(#[doc = $doc:literal])* $name:ident = $type:expr;)*) => {
+        $($(#[doc = $doc])* #[derive(Debug)] pub enum $name {}
+        impl Typed for $name { const TYPE: FieldType = $type; })*
+    };
+}
+
+types! {
+    /// A plain number.
+    Number = FieldType::Scalar(units::NONE);
+    /// A length in metres.
+    Length = FieldType::Scalar(units::LENGTH);
+    /// An angle in radians.
+    Angle = FieldType::Scalar(units::ANGLE);
+    /// A power in watts.
+    Power = FieldType::Scalar(units::POWER);
+    /// Radiance or irradiance in W/m².
+    Radiance = FieldType::Scalar(units::RADIANCE);
+    /// A whole number.
+    Int = FieldType::Int;
+    /// `true` or `false`.
+    Bool = FieldType::Bool;
+    /// A linear colour.
+    Color = FieldType::Color;
+    /// Three lengths.
+    Point = FieldType::Tuple(3, units::LENGTH);
+    /// Three numbers.
+    Vector = FieldType::Tuple(3, units::NONE);
+    /// Width and height in pixels.
+    Size = FieldType::IntTuple(2);
+    /// A placement.
+    Transform = FieldType::Transform;
+    /// A material.
+    Made = FieldType::Made(Category::Material);
+    /// The lens of a camera.
+    LensPart = FieldType::Part("lens");
+    /// A point, or a thing whose middle is meant.
+    Aim = FieldType::OneOf(&[FieldType::Tuple(3, units::LENGTH), FieldType::Target]);
+    /// A distance along the view, a point, or a thing.
+    Focus = FieldType::OneOf(&[
+        FieldType::Scalar(units::LENGTH),
+        FieldType::Tuple(3, units::LENGTH),
+        FieldType::Target,
+    ]);
+    /// A number of stops, or `auto`.
+    Exposure = FieldType::OneOf(&[FieldType::Choice(AUTO), FieldType::Scalar(units::NONE)]);
+    /// The name of a camera.
+    CameraName = FieldType::Named("camera");
+    /// A reconstruction filter.
+    FilterWord = FieldType::Choice(Filter::WORDS);
+    /// A tone curve.
+    TonemapWord = FieldType::Choice(Tonemap::WORDS);
+}
+
+/// The word that leaves a choice to the renderer.
+pub const AUTO: &[Word] = &[Word { name: "auto", doc: "Chosen from the scene, and printed." }];
+
+macro_rules! choice {
+    ($(#[doc = $doc:literal])* $name:ident { $(#[doc = $word_doc:literal] $variant:ident $word:literal,)* }) => {
+        $(#[doc = $doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+        pub enum $name { $(#[doc = $word_doc] $variant,)* }
+
+        impl $name {
+            /// The words as written, with what they mean.
+            pub const WORDS: &'static [Word] =
+                &[$(Word { name: $word, doc: $word_doc.trim_ascii() },)*];
+
+            /// Reads one of the words.
+            pub fn from_word(word: &str) -> Option<$name> {
+                match word { $($word => Some($name::$variant),)* _ => None }
+            }
+
+            /// As written.
+            pub fn word(self) -> &'static str {
+                match self { $($name::$variant => $word,)* }
+            }
+        }
+    };
+}
+
+choice! {
+    /// Reconstruction filter: how a pixel weighs the light around its centre.
+    Filter {
+        /// Evenly over one pixel.
+        Box "box",
+        /// Falls linearly to zero over one pixel.
+        Tent "tent",
+        /// A bell of standard deviation half a pixel, to 1.5 pixels.
+        Gaussian "gaussian",
+        /// Mitchell and Netravali's cubic with B = C = 1/3, to 2 pixels: crisp, slightly negative at its edge.
+        Mitchell "mitchell",
+    }
+}
+
+choice! {
+    /// The curve from scene radiance to display.
+    Tonemap {
+        /// Khronos PBR Neutral: keeps colours as they are, and rolls off the highlights.
+        Neutral "neutral",
+        /// Linear, cut at white.
+        None "none",
+        /// AgX: filmic, highlights go towards white.
+        Agx "agx",
+    }
+}
+
+macro_rules! kinds {
+    ($(
+        $(#[doc = $doc:literal])*
+        $category:ident $module:ident $name:literal $(rules [$($rule:expr),*])? {
+            $( $(#[doc = $field_doc:literal])* $key:ident $field:literal: $type:ident = $default:expr, $range:expr; )*
+        }
+    )*) => {
+        /// Every kind the language knows.
+        pub const KINDS: &[Kind] = &[$(Kind {
+            name: $name,
+            category: Category::$category,
+            doc: concat!($($doc, "\n"),*).trim_ascii(),
+            fields: $module::FIELDS,
+            rules: &[$($($rule),*)?],
+        },)*];
+
+        #[allow(non_camel_case_types, clippy::upper_case_acronyms)]
+        enum Order { $($module,)* }
+
+        $(
+            /// Keys to the fields of this kind.
+            pub mod $module {
+                use super::*;
+                /// The kind itself.
+                pub const KIND: KindId = KindId(Order::$module as u8);
+                #[allow(non_camel_case_types, dead_code, clippy::upper_case_acronyms)]
+                enum Index { $($key,)* End }
+                $(
+                    $(#[doc = $field_doc])*
+                    pub const $key: Key<$type> = Key { place: Place::Own(Index::$key as usize), ty: PhantomData };
+                )*
+                pub(super) const FIELDS: &[Field] = &[$(Field {
+                    name: $field,
+                    ty: <$type as Typed>::TYPE,
+                    default: $default,
+                    range: $range,
+                    doc: concat!($($field_doc, "\n"),*).trim_ascii(),
+                },)*];
+            }
+        )*
+    };
+}
+
+use Preset::{Absent, Required, Value};
+
+/// The fields that every shape and group takes besides its own.
+pub const PLACED: &[Field] = &[
+    Field {
+        name: "material",
+        ty: Made::TYPE,
+        default: Absent("the group's material, else a light grey `diffuse`"),
+        range: ANY,
+        doc: "What it is made of. In a group: of members that name none.",
+    },
+    Field {
+        name: "at",
+        ty: Point::TYPE,
+        default: Value("0"),
+        range: ANY,
+        doc: "Where its origin stands. Moves last, after `place`.",
+    },
+    Field {
+        name: "place",
+        ty: Transform::TYPE,
+        default: Absent("as it is"),
+        range: ANY,
+        doc: "A pipeline read left to right: `scale(2) |> turn(z: 10deg) |> move(0, 1m, 0)`.",
+    },
+];
+
+/// Keys to the fields of [`PLACED`].
+pub mod placed {
+    use super::*;
+    /// What it is made of.
+    pub const MATERIAL: Key<Made> = Key { place: Place::Common(0), ty: PhantomData };
+    /// Where its origin stands.
+    pub const AT: Key<Point> = Key { place: Place::Common(1), ty: PhantomData };
+    /// A pipeline of transforms.
+    pub const PLACE: Key<Transform> = Key { place: Place::Common(2), ty: PhantomData };
+}
+
+/// The material of whatever names none, and the built-in colour of materials that give none.
+pub const DEFAULT_COLOR: &str = "#cccccc";
+
+kinds! {
+    /// A ball.
+    Shape sphere "sphere" {
+        /// From the centre to the surface.
+        RADIUS "radius": Length = Required, POSITIVE;
+    }
+
+    /// A hyperboloid about the y axis. With two sheets: y²/b² − x²/a² − z²/c² = 1, a bowl above and one
+    /// below with tips at y = ±b. With one: x²/a² + z²/c² − y²/b² = 1, a waisted tower.
+    Shape hyperboloid "hyperboloid" rules [Rule::Needs("open", "height")] {
+        /// The lengths (a, b, c) of the equation.
+        AXES "axes": Point = Required, POSITIVE;
+        /// Two bowls, or one tower.
+        SHEETS "sheets": Int = Value("2"), within(1.0, 2.0);
+        /// Keeps |y| ≤ height/2 and closes it with flat caps.
+        HEIGHT "height": Length = Absent("without end"), POSITIVE;
+        /// Leaves the caps away.
+        OPEN "open": Bool = Value("false"), ANY;
+    }
+
+    /// An endless plane through its origin. The solid half-space lies behind the normal.
+    Shape plane "plane" {
+        /// Out of the ground. Need not be of length 1.
+        NORMAL "normal": Vector = Value("(0, 1, 0)"), ANY;
+    }
+
+    /// Things that are placed together.
+    Group group "group" {}
+
+    /// Lambertian: scatters evenly, like plaster or paper. The report's opaque material.
+    Material diffuse "diffuse" {
+        /// Reflectance.
+        COLOR "color": Color = Value(DEFAULT_COLOR), NOT_NEGATIVE;
+    }
+
+    /// A perfect mirror. The report's specular material.
+    Material mirror "mirror" {
+        /// Reflectance, the same at every angle.
+        COLOR "color": Color = Value("#f8f8f8"), NOT_NEGATIVE;
+    }
+
+    /// Glass, water and the like: refraction by Snell's law, reflection by Fresnel's equations. The report's
+    /// transparent material.
+    Material dielectric "dielectric" {
+        /// Refractive index.
+        IOR "ior": Number = Value("1.5"), within(0.1, 10.0);
+        /// White light has this colour after travelling `depth` inside.
+        TINT "tint": Color = Value("white"), NOT_NEGATIVE;
+        /// See `tint`.
+        DEPTH "depth": Length = Value("1cm"), POSITIVE;
+        /// From 0, polished, to 1, frosted (GGX with α = roughness²).
+        ROUGHNESS "roughness": Number = Value("0"), within(0.0, 1.0);
+    }
+
+    /// A conductor: GGX microfacets, single scattering, with Schlick's Fresnel term.
+    Material metal "metal" {
+        /// Reflectance at normal incidence.
+        COLOR "color": Color = Value("#e0e0e0"), NOT_NEGATIVE;
+        /// From 0, polished, to 1, rough (GGX with α = roughness²).
+        ROUGHNESS "roughness": Number = Value("0"), within(0.0, 1.0);
+    }
+
+    /// A clear coat over a diffuse base; light reflected inside the coat is counted.
+    Material plastic "plastic" {
+        /// Reflectance of the base.
+        COLOR "color": Color = Value(DEFAULT_COLOR), NOT_NEGATIVE;
+        /// Refractive index of the coat.
+        IOR "ior": Number = Value("1.5"), within(1.0, 10.0);
+        /// Of the coat: from 0, polished, to 1, rough (GGX with α = roughness²).
+        ROUGHNESS "roughness": Number = Value("0"), within(0.0, 1.0);
+    }
+
+    /// Glows, and reflects nothing. A closed shape glows outwards, an open one on both sides.
+    Material emitter "emitter" rules [Rule::ExactlyOne(&["power", "radiance"])] {
+        /// Multiplies the power or the radiance.
+        COLOR "color": Color = Value("white"), NOT_NEGATIVE;
+        /// Radiated by the whole surface, on both sides where it is open.
+        POWER "power": Power = Absent("from `radiance`"), NOT_NEGATIVE;
+        /// Per steradian.
+        RADIANCE "radiance": Radiance = Absent("from `power`"), NOT_NEGATIVE;
+    }
+
+    /// A lamp: a point, or a glowing sphere that is seen.
+    Light light "light" {
+        /// Its centre.
+        AT "at": Point = Value("0"), ANY;
+        /// Radiated in all directions together; each channel is power × color.
+        POWER "power": Power = Required, NOT_NEGATIVE;
+        /// Multiplies the power.
+        COLOR "color": Color = Value("white"), NOT_NEGATIVE;
+        /// 0 is a point, which casts hard shadows and is not seen; else a glowing sphere.
+        RADIUS "radius": Length = Value("0"), NOT_NEGATIVE;
+    }
+
+    /// A distant disc of light.
+    Light sun "sun" {
+        /// Towards the sun. Need not be of length 1.
+        FROM "from": Vector = Required, ANY;
+        /// On a surface that faces it.
+        IRRADIANCE "irradiance": Radiance = Required, NOT_NEGATIVE;
+        /// Its apparent diameter; 0 casts hard shadows.
+        ANGLE "angle": Angle = Value("0.53deg"), within(0.0, std::f64::consts::PI);
+        /// Multiplies the irradiance.
+        COLOR "color": Color = Value("white"), NOT_NEGATIVE;
+    }
+
+    /// Light from everywhere beyond the scene; what is seen where nothing stands.
+    Light sky "sky" {
+        /// Multiplies the radiance.
+        COLOR "color": Color = Value("white"), NOT_NEGATIVE;
+        /// Per steradian.
+        RADIANCE "radiance": Radiance = Value("1W/m2"), NOT_NEGATIVE;
+    }
+
+    /// Where the picture is taken from.
+    Block camera "camera" {
+        /// The centre of the lens.
+        FROM "from": Point = Absent("a three-quarter view that frames every bounded thing"), ANY;
+        /// What stands in the middle of the picture.
+        LOOK "look": Aim = Absent("the middle of every bounded thing"), ANY;
+        /// This direction is upright in the picture.
+        UP "up": Vector = Value("(0, 1, 0)"), ANY;
+        /// Angle of view across the width.
+        FOV "fov": Angle = Absent("40deg, or what the lens gives"), Range { low: 0.0, high: 3.14, above: true };
+        /// In stops: 0 shows radiance 1 as white, 1 is twice as bright.
+        EXPOSURE "exposure": Exposure = Value("auto"), within(-100.0, 100.0);
+        /// Depth of field.
+        LENS "lens": LensPart = Absent("a pinhole: everything is sharp"), ANY;
+    }
+
+    /// The lens of a camera: what lies off the plane of focus is blurred. Give an `aperture`, or `focal` and
+    /// `stop` as a photographer would. May also stand at the top level beside the only camera.
+    Block lens "lens" rules [
+        Rule::Excludes("aperture", &["focal", "stop", "sensor"]),
+        Rule::ExactlyOne(&["aperture", "focal"]),
+        Rule::Together(&["focal", "stop"]),
+        Rule::Needs("sensor", "focal")
+    ] {
+        /// The plane that is sharp: its distance along the view, or a point or thing it goes through.
+        FOCUS "focus": Focus = Absent("what the camera looks at"), POSITIVE;
+        /// Diameter of the opening.
+        APERTURE "aperture": Length = Absent("`focal` / `stop`"), NOT_NEGATIVE;
+        /// Focal length; with `sensor` it gives the angle of view.
+        FOCAL "focal": Length = Absent("from the camera's `fov`"), POSITIVE;
+        /// The f-number.
+        STOP "stop": Number = Absent("see `focal`"), POSITIVE;
+        /// Width of the sensor.
+        SENSOR "sensor": Length = Value("36mm"), POSITIVE;
+    }
+
+    /// How the picture is made.
+    Block render "render" rules [Rule::Excludes("noise", &["samples"])] {
+        /// Width and height in pixels.
+        SIZE "size": Size = Value("(640, 480)"), within(1.0, 65_536.0);
+        /// Camera paths a pixel.
+        SAMPLES "samples": Int = Absent("64, or as many as `noise` needs"), within(1.0, 1_048_576.0);
+        /// Stop when the standard error of the displayed pixels is below this share of white.
+        NOISE "noise": Number = Absent("see `samples`"), Range { low: 0.0, high: 1.0, above: true };
+        /// Scattering events of a path: 0 shows what glows, 1 adds direct light.
+        BOUNCES "bounces": Int = Value("8"), within(0.0, 1024.0);
+        /// Whether light also comes by way of diffuse surfaces. Without: straight from the lights, plus mirrors
+        /// and glass.
+        INDIRECT "indirect": Bool = Value("true"), ANY;
+        /// Chooses the random numbers.
+        SEED "seed": Int = Value("0"), within(0.0, 9_007_199_254_740_992.0);
+        /// Which camera takes the picture, where there are several.
+        CAMERA "camera": CameraName = Absent("the only one"), ANY;
+        /// The curve from scene to display.
+        TONEMAP "tonemap": TonemapWord = Value("neutral"), ANY;
+        /// How a pixel weighs the light around it.
+        FILTER "filter": FilterWord = Value("gaussian"), ANY;
+    }
+}

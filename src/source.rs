@@ -1,0 +1,55 @@
+//! Source texts, and where lines begin in them.
+
+use crate::span::{SourceId, Span};
+
+/// One source text with the name a person knows it by.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// Path as given, or `<stdin>`.
+    pub name: String,
+    /// The whole text.
+    pub text: String,
+    line_starts: Vec<u32>,
+}
+
+impl Source {
+    /// Takes a text in, and finds its lines.
+    pub fn new(name: impl Into<String>, text: impl Into<String>) -> Source {
+        let text = text.into();
+        let ends = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n');
+        let line_starts = std::iter::once(0).chain(ends.map(|(at, _)| at as u32 + 1)).collect();
+        Source { name: name.into(), text, line_starts }
+    }
+
+    /// Line and column of a byte, both from 1; the column counts characters.
+    pub fn line_column(&self, byte: usize) -> (usize, usize) {
+        let line = self.line_starts.partition_point(|&start| start as usize <= byte) - 1;
+        let start = self.line_starts[line] as usize;
+        let column = self.text.get(start..byte).map_or(byte - start, |before| before.chars().count());
+        (line + 1, column + 1)
+    }
+}
+
+/// The source texts of one compilation.
+#[derive(Clone, Debug, Default)]
+pub struct Sources {
+    all: Vec<Source>,
+}
+
+impl Sources {
+    /// Adds a source and gives its id.
+    pub fn add(&mut self, source: Source) -> SourceId {
+        self.all.push(source);
+        SourceId(self.all.len() as u32 - 1)
+    }
+
+    /// The source with this id, which came from [`Sources::add`] of this table.
+    pub fn get(&self, id: SourceId) -> &Source {
+        &self.all[id.0 as usize]
+    }
+
+    /// The text of a span.
+    pub fn text(&self, span: Span) -> &str {
+        self.get(span.source).text.get(span.range()).unwrap_or("")
+    }
+}
