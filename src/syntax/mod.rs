@@ -1,6 +1,60 @@
 //! Text to tree.
+//!
+//! Parsing never fails: it returns a tree and what was wrong. Top-level items stand alone: `cut` finds
+//! them in one pass, each is then parsed by the grammar in `grammar/rt.pest` and turned into [`ast`] by
+//! `build` and `value`, a large text's items in parallel. What is said of slips is in `errors`.
 
 pub mod ast;
+mod build;
+mod cut;
+mod errors;
+mod value;
+
+use crate::diagnostic::Diagnostic;
+use crate::span::{SourceId, Span};
+use rayon::prelude::*;
 
 /// The deepest nesting of brackets, and the deepest tree of an expression.
 pub const MAX_DEPTH: usize = 512;
+
+/// The longest source in bytes.
+pub const MAX_SOURCE: usize = 256 << 20;
+
+/// From this length on a text's items are parsed in parallel.
+const PARALLEL: usize = 1 << 20;
+
+/// Reads a source. The tree holds all that could be understood; every slip is among the diagnostics, which
+/// are in the order of the text.
+pub fn parse(source: SourceId, text: &str) -> (ast::File, Vec<Diagnostic>) {
+    let span = Span::new(source, 0, text.len().min(MAX_SOURCE));
+    if text.len() > MAX_SOURCE {
+        let body = ast::Body { entries: vec![], span };
+        let file = ast::File { source, body, comments: vec![] };
+        return (file, vec![errors::long_source(span.after(), MAX_SOURCE >> 20)]);
+    }
+    let cut = cut::cut(source, text);
+    let mut sink = cut.sink;
+    let mut entries = Vec::with_capacity(cut.items.len());
+    let mut collect = |(built, slips)| {
+        entries.extend::<Vec<ast::Entry>>(built);
+        sink.append(slips);
+    };
+    if text.len() < PARALLEL {
+        collect(build::items(source, &cut.items));
+    } else {
+        let built: Vec<_> = cut.items.par_chunks(1024).map(|chunk| build::items(source, chunk)).collect();
+        built.into_iter().for_each(collect);
+    }
+    let file = ast::File { source, body: ast::Body { entries, span }, comments: cut.comments };
+    (file, sink.into_sorted())
+}
+
+/// Reads a text that is one expression, such as a default value or a setting from the command line.
+pub fn parse_expression(source: SourceId, text: &str) -> (ast::Expr, Vec<Diagnostic>) {
+    let text = &text[..text.floor_char_boundary(MAX_SOURCE)];
+    let cut = cut::whole(source, text);
+    let mut sink = cut.sink;
+    let (expr, slips) = build::value(source, text.len(), cut.items.first());
+    sink.append(slips);
+    (expr, sink.into_sorted())
+}

@@ -1,0 +1,439 @@
+//! What is said of each slip: one small function a diagnostic.
+
+use super::MAX_DEPTH;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::span::Span;
+
+/// Beyond so many nobody reads on, and a hostile file must not exhaust the memory.
+const MAX_DIAGNOSTICS: usize = 1000;
+
+/// Collects diagnostics up to a limit.
+#[derive(Debug)]
+pub(super) struct Sink(Vec<Diagnostic>);
+
+impl Sink {
+    pub(super) fn new() -> Sink {
+        Sink(vec![])
+    }
+
+    pub(super) fn push(&mut self, diagnostic: Diagnostic) {
+        if self.0.len() < MAX_DIAGNOSTICS {
+            self.0.push(diagnostic);
+        }
+    }
+
+    pub(super) fn append(&mut self, other: Sink) {
+        other.0.into_iter().for_each(|diagnostic| self.push(diagnostic));
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    pub(super) fn truncate(&mut self, length: usize) {
+        self.0.truncate(length);
+    }
+
+    /// What was collected, in the order of the text.
+    pub(super) fn into_sorted(mut self) -> Vec<Diagnostic> {
+        self.0.sort_by_key(|diagnostic| (diagnostic.primary.span.start, diagnostic.code));
+        self.0
+    }
+}
+
+// --- E0001: unexpected ------------------------------------------------------------------------------------
+
+/// The beginning of a text, for a message: a word, a number or a sign.
+pub(super) fn first_token(text: &str) -> &str {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let word = text.find(|c| !is_word(c)).unwrap_or(text.len());
+    let sign = text.chars().next().map_or(0, char::len_utf8);
+    &text[..word.max(sign)]
+}
+
+/// A character or word as it is shown; those one cannot see or type by their number too.
+fn shown(token: &str) -> String {
+    match token.chars().next() {
+        Some(c) if c.is_control() => format!("the control character U+{:04X}", u32::from(c)),
+        Some(c) if !c.is_ascii() && !c.is_alphanumeric() => format!("`{c}` (U+{:04X})", u32::from(c)),
+        _ => format!("`{token}`"),
+    }
+}
+
+fn unexpected(token: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("unexpected {}", shown(token)), span)
+}
+
+/// Text where a value should stand.
+pub(super) fn unexpected_value(token: &str, span: Span) -> Diagnostic {
+    let diagnostic = unexpected(token, span).at("a value belongs here");
+    match token {
+        "[" => diagnostic.help("several values stand in parentheses: `(0, 1, 0)m`"),
+        "{" => diagnostic.help("name the kind before the brace: `sphere { … }`"),
+        "'" | "“" | "”" | "‘" | "’" => diagnostic.help("text stands in straight double quotes: `\"text\"`"),
+        "+" => diagnostic.help("a positive number has no sign"),
+        "!" => diagnostic.help("write `not`"),
+        "=" => diagnostic.help("write one `=` or `:` and then the value"),
+        _ => diagnostic.help("write a value such as `5cm`, `(0, 1, 0)m`, `#d94f30` or a name"),
+    }
+}
+
+/// Text behind a whole entry.
+pub(super) fn unexpected_extra(token: &str, span: Span) -> Diagnostic {
+    let diagnostic = unexpected(token, span).at("the entry should have ended before this");
+    match token {
+        "{" => diagnostic.help("only a kind is followed by a body: `sphere { … }` or `sphere ball { … }`"),
+        "&" => diagnostic.help("write `and`"),
+        "|" => diagnostic.help("write `or`, or `|>` to pass a placement on"),
+        "^" => diagnostic.help("write `pow(a, b)`, or `a * a` for a square"),
+        "?" => diagnostic.help("a choice is written `if … then … else …`"),
+        ":" => diagnostic.help("one `:` stands between a field's name and its value"),
+        _ => diagnostic.help("end the entry with a comma or a new line, or put an operator between the two"),
+    }
+}
+
+/// Text behind a value inside parentheses.
+pub(super) fn unexpected_in_parentheses(token: &str, span: Span) -> Diagnostic {
+    unexpected(token, span)
+        .at("a comma or `)` belongs before this")
+        .help("separate the values in parentheses by commas")
+}
+
+/// Text behind an expression that stands alone.
+pub(super) fn unexpected_behind(token: &str, span: Span) -> Diagnostic {
+    unexpected(token, span).at("the value should have ended before this").help("give one value alone")
+}
+
+/// An entry that begins like nothing in the language.
+pub(super) fn unexpected_entry(token: &str, span: Span, top: bool) -> Diagnostic {
+    let diagnostic = if top {
+        unexpected(token, span).at("a thing or a definition should begin here")
+    } else {
+        unexpected(token, span).at("a field or a thing should begin here")
+    };
+    match token {
+        "#" => diagnostic.help("a comment begins with `//`"),
+        _ if top => diagnostic.help("begin with a kind, as in `sphere { … }`, or with `let` or `material`"),
+        _ => diagnostic.help("begin with a name, as in `radius: 5cm` or `sphere { … }`"),
+    }
+}
+
+/// A second comma, or one at the beginning.
+pub(super) fn stray_separator(span: Span, separator: &str) -> Diagnostic {
+    unexpected(separator, span).at("nothing stands before it").help("leave it out").fix(span, "")
+}
+
+/// A byte of the text that only programs write.
+pub(super) fn control(span: Span) -> Diagnostic {
+    unexpected("\u{1}", span).at("invisible").help("delete it").fix(span, "")
+}
+
+/// A word of the language where a name should stand.
+pub(super) fn reserved(word: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("`{word}` is a word of the language and cannot be a name"), span)
+        .at("reserved")
+        .help("choose another name")
+}
+
+/// A word of the language where a value should stand.
+pub(super) fn reserved_value(word: &str, span: Span) -> Diagnostic {
+    unexpected(word, span).at("a value belongs here").help(format!("`{word}` is a word of the language, not a value"))
+}
+
+/// Nothing where a value should stand; `before` is what it should follow.
+pub(super) fn missing_value(before: &str, span: Span) -> Diagnostic {
+    let message = match before {
+        "" => "a value is missing".to_string(),
+        before => format!("a value is missing after `{before}`"),
+    };
+    Diagnostic::new(Code::E0001, message, span).at("a value belongs here")
+}
+
+/// `()`
+pub(super) fn empty_parentheses(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, "these parentheses are empty", span)
+        .at("a value belongs here")
+        .help("write one value or several: `(0, 1, 0)m`")
+}
+
+/// `(x: 1, 2)` outside a call.
+pub(super) fn label_outside_call(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("unexpected name `{name}` in a group of values"), span)
+        .at("only the values of a function have names")
+        .help("leave the name out, or put a function before the parentheses: `turn(y: 30deg)`")
+}
+
+/// `value.` with nothing behind the dot.
+pub(super) fn missing_member(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, "a name is missing after `.`", span)
+        .at("what of it?")
+        .help("name the part that is meant: `ball.radius`")
+}
+
+/// Two entries on a line.
+pub(super) fn crowded(word: &str, span: Span) -> Diagnostic {
+    unexpected(word, span)
+        .at("begins something new on the same line")
+        .help("put a comma or a new line before it")
+        .fix(span.before(), ", ")
+}
+
+/// A name at the top level, and nothing more.
+pub(super) fn missing_body(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("`{name}` has no body"), span)
+        .at("`{` is missing behind this")
+        .help(format!("write `{name} {{ … }}`"))
+}
+
+/// A kind with something other than a body behind it, at the top level.
+pub(super) fn no_brace(kind: &str, span: Span, value: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("`{{` is missing after `{kind}`"), span)
+        .at("a kind")
+        .label(value, "its body belongs here")
+        .help(format!("a thing has its fields in braces: `{kind} {{ … }}`"))
+}
+
+/// A name in a body, and nothing more.
+pub(super) fn lone_name(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("`{name}` has neither a value nor a body"), span)
+        .at("`:` or `{` is missing behind this")
+        .help(format!("write `{name}: …` for a field, or `{name} {{ … }}` for a thing"))
+}
+
+/// `let a 5`, `material glass { … }`
+pub(super) fn missing_equals(keyword: &str, name: &str, span: Span) -> Diagnostic {
+    let value = if keyword == "material" { "dielectric { … }" } else { "…" };
+    Diagnostic::new(Code::E0001, format!("`=` is missing after `{keyword} {name}`"), span)
+        .at("named, but not defined")
+        .help(format!("write `{keyword} {name} = {value}`"))
+}
+
+/// `let = 5`, `let`
+pub(super) fn missing_name(keyword: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("a name is missing after `{keyword}`"), span)
+        .at("defines what?")
+        .help(format!("write `{keyword} name = …`"))
+}
+
+/// `x = 5` at the top level.
+pub(super) fn missing_let(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("`let` is missing before `{name}`"), span)
+        .at("a definition needs its word")
+        .help(format!("write `let {name} = …`, or `material {name} = …` for a material"))
+}
+
+// --- E0002: unclosed --------------------------------------------------------------------------------------
+
+/// Brackets without a closer, the innermost first, and where that showed.
+pub(super) fn unclosed(openers: impl Iterator<Item = Span>, closer: char, seen: Option<Span>) -> Diagnostic {
+    let opener = match closer {
+        ')' => '(',
+        ']' => '[',
+        _ => '{',
+    };
+    let mut openers = openers;
+    let first = openers.next().expect("at least one bracket is open");
+    let mut diagnostic = Diagnostic::new(Code::E0002, format!("this `{opener}` is never closed"), first)
+        .at("opened here")
+        .help(format!("add the missing `{closer}`"));
+    if let Some(seen) = seen {
+        diagnostic = diagnostic.label(seen, "still open when this begins");
+    }
+    openers.take(3).fold(diagnostic, |diagnostic, opener| diagnostic.label(opener, "nor is this one"))
+}
+
+/// `/*` without its end.
+pub(super) fn unclosed_comment(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0002, "this comment is never closed", span)
+        .at("the rest of the file is a comment")
+        .help("end it with `*/`, or begin each of its lines with `//`")
+}
+
+/// `"` without its end on the line.
+pub(super) fn unclosed_string(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0002, "this text is not closed on its line", span)
+        .at("opened here")
+        .help("end it with `\"` on the same line; a line end inside it is written `\\n`")
+}
+
+/// `(0, 1]`
+pub(super) fn wrong_closer(span: Span, opener: Span, closer: char, right: char) -> Diagnostic {
+    Diagnostic::new(Code::E0002, format!("`{closer}` does not close what is open"), span)
+        .at(format!("`{right}` is wanted"))
+        .label(opener, "opened here")
+        .help(format!("write `{right}`"))
+        .fix(span, right)
+}
+
+/// A closer without an opener.
+pub(super) fn stray_closer(span: Span, closer: char) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("`{closer}` closes nothing"), span)
+        .at("nothing of its kind is open here")
+        .help("delete it, or open the bracket it should close")
+}
+
+// --- E0003: `=` or `;` ------------------------------------------------------------------------------------
+
+/// `radius = 5cm`
+pub(super) fn equals_in_field(name: &str, sign: Span, edit: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0003, format!("the value of `{name}` follows `:`"), sign)
+        .at("`:` is wanted")
+        .help(format!("write `{name}: …`"))
+        .fix(edit, ":")
+}
+
+/// `let x: 5`
+pub(super) fn colon_in_definition(keyword: &str, name: &str, sign: Span, edit: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0003, format!("the value of `{keyword} {name}` follows `=`"), sign)
+        .at("`=` is wanted")
+        .help(format!("write `{keyword} {name} = …`"))
+        .fix(edit, " =")
+}
+
+/// `radius: 5cm;`
+pub(super) fn semicolon(span: Span, replacement: &str) -> Diagnostic {
+    let help = match replacement {
+        "" => "delete it: the line end separates",
+        _ => "write a comma",
+    };
+    Diagnostic::new(Code::E0003, "`;` does not separate", span)
+        .at("not a separator")
+        .help(help)
+        .fix(span, replacement)
+}
+
+// --- E0004 to E0007 ---------------------------------------------------------------------------------------
+
+/// `8 mm`
+pub(super) fn space_before_unit(unit: &str, span: Span, space: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0004, format!("a space stands before the unit `{unit}`"), span)
+        .at("a unit touches its number or `)`")
+        .help("delete the space")
+        .fix(space, "")
+}
+
+/// `radius 50cm`
+pub(super) fn missing_colon(name: &str, span: Span, value: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0005, format!("`:` is missing after `{name}`"), span)
+        .at("a field's name")
+        .label(value, "its value")
+        .help(format!("write `{name}: …`"))
+        .fix(span.after(), ":")
+}
+
+/// `<x, y, z>`
+pub(super) fn angle_brackets(span: Span, open: Span, close: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0006, "angle brackets do not hold values", span)
+        .at("parentheses are wanted")
+        .help("write `(x, y, z)`, with the unit behind it: `(0, 1, 0)m`")
+        .fix(open, "(")
+        .fix(close, ")")
+}
+
+/// `a..b`
+pub(super) fn dots(dots: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0007, format!("a range is not written with `{dots}`"), span)
+        .at("`to` is wanted")
+        .help("write `a to b`, which includes both ends")
+}
+
+// --- E0008: malformed literals ----------------------------------------------------------------------------
+
+/// `1.2.3`, `1e`, `0x10`
+pub(super) fn bad_number(text: &str, span: Span) -> Diagnostic {
+    let diagnostic = Diagnostic::new(Code::E0008, format!("`{text}` is not a number"), span).at("malformed");
+    if let Some(digits) = text.strip_prefix('.') {
+        return diagnostic.help(format!("write `0.{digits}`")).fix(span.before(), "0");
+    }
+    if let Some(digits) = text.strip_suffix('.') {
+        return diagnostic.help(format!("write `{digits}`")).fix(span, digits);
+    }
+    let lower = text.to_ascii_lowercase();
+    if ["0x", "0b", "0o"].iter().any(|prefix| lower.starts_with(prefix)) {
+        return diagnostic.help("numbers are decimal; a colour is written `#d94f30`");
+    }
+    if text.contains('_') {
+        return diagnostic.help("`_` stands between two digits: `1_000`");
+    }
+    if lower.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.').starts_with('e') {
+        return diagnostic.help("digits follow the `e`: `1e-3`");
+    }
+    if text.matches('.').count() > 1 {
+        return diagnostic.help("a number has one decimal point; several numbers stand in parentheses: `(1, 2, 3)`");
+    }
+    diagnostic.help("numbers are written `3`, `0.5` or `1e-3`")
+}
+
+/// `1e999`
+pub(super) fn huge_number(text: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0008, format!("`{text}` is too large a number"), span)
+        .at("beyond 1.8e308")
+        .help("write a smaller number")
+}
+
+/// `"\q"`
+pub(super) fn bad_escape(escape: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0008, format!("`{escape}` means nothing in a text"), span)
+        .at("unknown escape")
+        .help("write `\\\\` for a backslash; besides there are `\\\"`, `\\n` and `\\t`")
+}
+
+/// `#12345`
+pub(super) fn bad_color(text: &str, span: Span) -> Diagnostic {
+    let diagnostic = Diagnostic::new(Code::E0008, format!("`{text}` is not a colour"), span);
+    let digits = &text[1..];
+    if let Some(wrong) = digits.chars().find(|c| !c.is_ascii_hexdigit()) {
+        return diagnostic
+            .at(format!("`{wrong}` is not a hexadecimal digit"))
+            .help("the digits are 0 to 9 and a to f: `#d94f30`");
+    }
+    let count = match digits.len() {
+        0 => "no digits".to_string(),
+        1 => "1 digit".to_string(),
+        n => format!("{n} digits"),
+    };
+    let diagnostic = diagnostic.at(count);
+    match digits.len() {
+        4 | 8 => diagnostic.help("write three digits or six; a colour has no transparency"),
+        _ => diagnostic.help("write three digits or six: `#fff` or `#d94f30`"),
+    }
+}
+
+// --- E0406: limits ----------------------------------------------------------------------------------------
+
+/// Too many brackets inside each other.
+pub(super) fn deep_brackets(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0406, format!("brackets are nested more than {MAX_DEPTH} deep"), span)
+        .at("one too many")
+        .help("name the inner parts by `let`")
+}
+
+/// Too deep an expression.
+pub(super) fn deep_expression(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0406, format!("the expression is more than {MAX_DEPTH} operations deep"), span)
+        .at("one too many")
+        .help("name its parts by `let`")
+}
+
+/// Far too many operators.
+pub(super) fn long_expression(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0406, "the expression has too many operators", span)
+        .at("one too many")
+        .help("name its parts by `let`")
+}
+
+/// Too many values in parentheses.
+pub(super) fn many_values(span: Span, limit: usize) -> Diagnostic {
+    Diagnostic::new(Code::E0406, format!("more than {limit} values in parentheses"), span).at("one too many")
+}
+
+/// Too long a text.
+pub(super) fn long_source(span: Span, mebibytes: usize) -> Diagnostic {
+    Diagnostic::new(Code::E0406, format!("the source is longer than {mebibytes} MiB"), span)
+        .at("where it is over the limit")
+}
+
+/// Nested so deep that the grammar gave up.
+pub(super) fn exhausted(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0406, "this is nested too deep to be read", span).at("skipped")
+}

@@ -1,0 +1,342 @@
+//! Expressions: the flat list that the grammar gives becomes a tree by precedence.
+
+use super::ast::{Argument, BinaryOp, Expr, ExprKind, Name, UnaryOp};
+use super::build::{Builder, Deep, Node, Rule, is_reserved};
+use super::{MAX_DEPTH, errors};
+use crate::span::Span;
+use pest::pratt_parser::{Assoc, Op, PrattParser};
+use smol_str::{SmolStr, SmolStrBuilder};
+use std::sync::LazyLock;
+
+/// The operators, the loosest first.
+static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
+    let left = |rule| Op::infix(rule, Assoc::Left);
+    PrattParser::new()
+        .op(left(Rule::pipe))
+        .op(left(Rule::or))
+        .op(left(Rule::and))
+        .op(Op::prefix(Rule::not))
+        .op(left(Rule::compare))
+        .op(left(Rule::dots))
+        .op(left(Rule::sum))
+        .op(left(Rule::product))
+        .op(Op::prefix(Rule::negate))
+        .op(Op::postfix(Rule::member))
+});
+
+fn binary(symbol: &str) -> Option<BinaryOp> {
+    BinaryOp::ALL.iter().copied().find(|operator| operator.symbol() == symbol)
+}
+
+fn invalid(span: Span) -> Deep<Expr> {
+    (Expr { kind: ExprKind::Invalid, span }, 1)
+}
+
+/// The tree of an expression, and its depth.
+pub(super) fn expression(builder: &Builder, pair: Node) -> Deep<Expr> {
+    let span = pair.as_span();
+    let span = builder.at(span.start(), builder.before(span.end()).len().max(span.start()));
+    let mut pairs = pair.into_inner();
+    // Most expressions are one value.
+    if pairs.len() == 1 {
+        return primary(builder, pairs.next().expect("there is one"));
+    }
+    // The parser calls itself for each operator of a row of prefixes.
+    let mut row = 0;
+    for pair in pairs.clone() {
+        row = if matches!(pair.as_rule(), Rule::negate | Rule::not) { row + 1 } else { 0 };
+        if row >= MAX_DEPTH {
+            builder.allows(row + 1, builder.span(&pair));
+            return invalid(span);
+        }
+    }
+    PRECEDENCE
+        .map_primary(|pair| primary(builder, pair))
+        .map_prefix(|operator, operand| prefix(builder, &operator, operand))
+        .map_postfix(|value, member| postfix(builder, value, member))
+        .map_infix(|left, operator, right| infix(builder, left, &operator, right))
+        .parse(pairs)
+}
+
+/// The expression, unless it is too deep.
+fn checked(builder: &Builder, expr: Expr, depth: usize, place: Span) -> Deep<Expr> {
+    if builder.allows(depth, place) { (expr, depth) } else { invalid(expr.span) }
+}
+
+fn prefix(builder: &Builder, operator: &Node, (operand, depth): Deep<Expr>) -> Deep<Expr> {
+    let place = builder.span(operator);
+    let span = place.to(operand.span);
+    let operator = if operator.as_rule() == Rule::not { UnaryOp::Not } else { UnaryOp::Negate };
+    let kind = ExprKind::Unary { operator, operand: Box::new(operand) };
+    checked(builder, Expr { kind, span }, depth + 1, place)
+}
+
+fn postfix(builder: &Builder, (value, depth): Deep<Expr>, pair: Node) -> Deep<Expr> {
+    let place = builder.span(&pair);
+    let span = value.span.to(place);
+    let Some(word) = pair.into_inner().next() else {
+        builder.report(errors::missing_member(place));
+        return invalid(span);
+    };
+    let kind = ExprKind::Member { value: Box::new(value), member: builder.name(&word) };
+    checked(builder, Expr { kind, span }, depth + 1, place)
+}
+
+fn infix(builder: &Builder, left: Deep<Expr>, operator: &Node, right: Deep<Expr>) -> Deep<Expr> {
+    let ((left, left_depth), (right, right_depth)) = (left, right);
+    let at = builder.span(operator);
+    let span = left.span.to(right.span);
+    let Some(operator) = binary(operator.as_str()) else {
+        builder.report(errors::dots(operator.as_str(), at));
+        return invalid(span);
+    };
+    let kind = ExprKind::Binary { operator, at, left: Box::new(left), right: Box::new(right) };
+    checked(builder, Expr { kind, span }, 1 + left_depth.max(right_depth), at)
+}
+
+fn primary(builder: &Builder, pair: Node) -> Deep<Expr> {
+    let span = builder.span(&pair);
+    let leaf = |kind| (Expr { kind, span }, 1);
+    match pair.as_rule() {
+        Rule::literal => leaf(literal(builder, pair)),
+        Rule::reference => reference(builder, pair),
+        Rule::group => group(builder, pair),
+        Rule::color => leaf(color(builder, pair.as_str(), span)),
+        Rule::text => leaf(ExprKind::Text(text(builder, &pair))),
+        Rule::angled => angled(builder, pair),
+        Rule::malformed => {
+            builder.report(errors::bad_number(pair.as_str(), span));
+            invalid(span)
+        }
+        Rule::absent => absent(builder, &pair),
+        Rule::unexpected => {
+            builder.unexpected(&pair, errors::unexpected_value);
+            invalid(span)
+        }
+        // The only other rule is `reported`.
+        _ => invalid(span),
+    }
+}
+
+/// No value where one must stand. The place is just behind what it should follow.
+fn absent(builder: &Builder, pair: &Node) -> Deep<Expr> {
+    let before = builder.before(pair.as_span().start());
+    let place = builder.at(before.len(), before.len());
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let word = before.len() - before.trim_end_matches(is_word).len();
+    let sign = before.len() - before.trim_end_matches(|c: char| "|>=!<.:".contains(c)).len();
+    let last = before.chars().next_back().map_or(0, char::len_utf8);
+    let token = &before[before.len() - word.max(sign).max(last)..];
+    if !token.starts_with('\u{1}') {
+        builder.report(errors::missing_value(token, place));
+    }
+    invalid(place)
+}
+
+// --- Names, calls and parentheses ---------------------------------------------------------------------------
+
+fn reference(builder: &Builder, pair: Node) -> Deep<Expr> {
+    let span = builder.span(&pair);
+    let mut inner = pair.into_inner();
+    let word = inner.next().expect("a reference begins with a word");
+    let leaf = |kind| (Expr { kind, span }, 1);
+    match (word.as_str(), inner.next()) {
+        ("true", None) => leaf(ExprKind::Bool(true)),
+        ("false", None) => leaf(ExprKind::Bool(false)),
+        (name, rest) if is_reserved(name) => {
+            builder.report(errors::reserved_value(name, builder.span(&word)));
+            match rest {
+                Some(body) if body.as_rule() == Rule::body => drop(builder.construct(&word, body)),
+                Some(arguments) => drop(elements(builder, arguments)),
+                None => {}
+            }
+            invalid(span)
+        }
+        (name, None) => leaf(ExprKind::Name(SmolStr::new(name))),
+        (_, Some(body)) if body.as_rule() == Rule::body => {
+            let (construct, depth) = builder.construct(&word, body);
+            let kind = ExprKind::Construct(Box::new(construct));
+            checked(builder, Expr { kind, span }, depth, span)
+        }
+        (_, Some(arguments)) => {
+            let elements = elements(builder, arguments);
+            let depth = elements.depth + 1;
+            let call_end = elements.unit.as_ref().map_or(span, |_| Span { end: elements.end, ..span });
+            let kind = ExprKind::Call { function: builder.name(&word), arguments: elements.arguments };
+            let (call, depth) = checked(builder, Expr { kind, span: call_end }, depth, span);
+            scaled(builder, call, depth, elements.unit, span)
+        }
+    }
+}
+
+/// What stands between parentheses.
+struct Elements {
+    arguments: Vec<Argument>,
+    depth: usize,
+    unit: Option<Name>,
+    /// Just behind the closing parenthesis.
+    end: u32,
+}
+
+fn elements(builder: &Builder, pair: Node) -> Elements {
+    let mut found = Elements { arguments: vec![], depth: 0, unit: None, end: builder.span(&pair).end };
+    let mut name = None;
+    for pair in pair.into_inner() {
+        match pair.as_rule() {
+            Rule::label => name = Some(label(builder, pair)),
+            Rule::expr => {
+                let (value, depth) = expression(builder, pair);
+                found.depth = found.depth.max(depth);
+                found.arguments.push(Argument { name: name.take(), value });
+            }
+            Rule::extra => builder.unexpected(&pair, errors::unexpected_in_parentheses),
+            Rule::semicolon => builder.semicolon(&pair),
+            _ => {
+                let close = builder.span(&pair);
+                found.end = if pair.as_str().starts_with(')') { close.start + 1 } else { close.start };
+                found.unit = pair.into_inner().next().map(|unit| unit_name(builder, unit));
+            }
+        }
+    }
+    found
+}
+
+/// `name:`, or the slip `name =`.
+fn label(builder: &Builder, pair: Node) -> Name {
+    let span = builder.span(&pair);
+    let equals = pair.as_str().ends_with('=');
+    let name = builder.name(&pair.into_inner().next().expect("a label has a name"));
+    if equals {
+        let sign = Span { start: span.end - 1, ..span };
+        let edit = Span { start: name.span.end, ..span };
+        builder.report(errors::equals_in_field(&name.text, sign, edit));
+    }
+    name
+}
+
+/// `(a)`, `(a, b)`, either with a unit behind it.
+fn group(builder: &Builder, pair: Node) -> Deep<Expr> {
+    let outer = builder.span(&pair);
+    let Elements { arguments, depth, unit, end } = elements(builder, pair);
+    let span = Span { end, ..outer };
+    for argument in &arguments {
+        if let Some(name) = &argument.name {
+            builder.report(errors::label_outside_call(&name.text, name.span));
+        }
+    }
+    let mut values: Vec<Expr> = arguments.into_iter().map(|argument| argument.value).collect();
+    let kind = match values.len() {
+        0 => {
+            builder.report(errors::empty_parentheses(span));
+            ExprKind::Invalid
+        }
+        1 => ExprKind::Paren(Box::new(values.remove(0))),
+        _ => ExprKind::Tuple(values),
+    };
+    let (expr, depth) = checked(builder, Expr { kind, span }, depth + 1, span);
+    scaled(builder, expr, depth, unit, outer)
+}
+
+/// An expression with its unit behind the parenthesis, if there is one.
+fn scaled(builder: &Builder, value: Expr, depth: usize, unit: Option<Name>, span: Span) -> Deep<Expr> {
+    let Some(unit) = unit else { return (value, depth) };
+    let kind = ExprKind::Scaled { value: Box::new(value), unit };
+    checked(builder, Expr { kind, span }, depth + 1, span)
+}
+
+/// The slip `<x, y, z>`, taken as the triple that it means.
+fn angled(builder: &Builder, pair: Node) -> Deep<Expr> {
+    let span = builder.span(&pair);
+    let open = Span { end: span.start + 1, ..span };
+    let close = Span { start: span.end - 1, ..span };
+    builder.report(errors::angle_brackets(span, open, close));
+    let (mut values, mut deepest) = (vec![], 0);
+    for part in pair.into_inner() {
+        let (value, depth) = expression(builder, part);
+        deepest = deepest.max(depth);
+        values.push(value);
+    }
+    checked(builder, Expr { kind: ExprKind::Tuple(values), span }, deepest + 1, span)
+}
+
+// --- Literals -----------------------------------------------------------------------------------------------
+
+fn literal(builder: &Builder, pair: Node) -> ExprKind {
+    let (all, span) = (pair.as_str(), builder.span(&pair));
+    let mut inner = pair.into_inner();
+    let number = inner.next().expect("a literal begins with a number").as_str();
+    let unit = inner.next();
+    if unit.as_ref().is_some_and(|unit| is_misread(number, unit.as_str())) {
+        builder.report(errors::bad_number(all, span));
+        return ExprKind::Invalid;
+    }
+    let value = if number.contains('_') { number.replace('_', "").parse() } else { number.parse() };
+    let value: f64 = value.unwrap_or(f64::INFINITY);
+    if !value.is_finite() {
+        builder.report(errors::huge_number(number, span));
+        return ExprKind::Invalid;
+    }
+    match unit {
+        Some(unit) => ExprKind::Quantity { value, unit: unit_name(builder, unit) },
+        None => ExprKind::Number { value, int: number.bytes().all(|b| b.is_ascii_digit() || b == b'_') },
+    }
+}
+
+/// Whether what looks like a unit is rather the rest of a number: `1e`, `0x10`.
+fn is_misread(number: &str, unit: &str) -> bool {
+    let rest = |letters: [char; 2]| unit.strip_prefix(letters);
+    let exponent = rest(['e', 'E']).is_some_and(|rest| rest.bytes().all(|b| b.is_ascii_digit()));
+    let hexadecimal = rest(['x', 'X']).is_some_and(|rest| rest.bytes().all(|b| b.is_ascii_hexdigit()));
+    let digits = rest(['b', 'o']).is_some_and(|rest| rest.bytes().all(|b| b.is_ascii_digit()));
+    exponent || (number == "0" && (hexadecimal || digits))
+}
+
+/// A unit, or the slip of a space before it.
+fn unit_name(builder: &Builder, pair: Node) -> Name {
+    if pair.as_rule() != Rule::spaced_unit {
+        return builder.name(&pair);
+    }
+    let start = builder.span(&pair);
+    let unit = builder.name(&pair.into_inner().next().expect("behind the space stands a unit"));
+    builder.report(errors::space_before_unit(&unit.text, unit.span, Span { end: unit.span.start, ..start }));
+    unit
+}
+
+fn color(builder: &Builder, text: &str, span: Span) -> ExprKind {
+    let digits = &text[1..];
+    if matches!(digits.len(), 3 | 6) && digits.bytes().all(|b| b.is_ascii_hexdigit()) {
+        return ExprKind::Color(SmolStr::new(digits));
+    }
+    builder.report(errors::bad_color(text, span));
+    ExprKind::Invalid
+}
+
+/// The text between the quotes, its escapes resolved. An unknown one is reported and stands for itself.
+fn text(builder: &Builder, pair: &Node) -> SmolStr {
+    let quoted = pair.as_str();
+    let inside = &quoted[1..quoted.len() - 1];
+    if !inside.contains('\\') {
+        return SmolStr::new(inside);
+    }
+    let mut resolved = SmolStrBuilder::new();
+    let mut characters = inside.char_indices();
+    while let Some((index, character)) = characters.next() {
+        if character != '\\' {
+            resolved.push(character);
+            continue;
+        }
+        match characters.next() {
+            Some((_, same @ ('"' | '\\'))) => resolved.push(same),
+            Some((_, 'n')) => resolved.push('\n'),
+            Some((_, 't')) => resolved.push('\t'),
+            Some((_, unknown)) => {
+                let start = pair.as_span().start() + 1 + index;
+                let end = start + 1 + unknown.len_utf8();
+                builder.report(errors::bad_escape(&format!("\\{unknown}"), builder.at(start, end)));
+                resolved.push(unknown);
+            }
+            None => {}
+        }
+    }
+    resolved.finish()
+}
