@@ -22,13 +22,53 @@
 //! | [`output`] | film to the bytes of image files, and back | files |
 //! | [`report`] | diagnostics to text for a person | what they are about |
 
-pub mod span;
-pub mod source;
-pub mod diagnostic;
-pub mod math;
+pub mod check;
 pub mod color;
-pub mod units;
-pub mod schema;
 pub mod develop;
-pub mod syntax;
+pub mod diagnostic;
+pub mod eval;
+pub mod lower;
+pub mod math;
 pub mod scene;
+pub mod schema;
+pub mod source;
+pub mod span;
+pub mod syntax;
+pub mod units;
+
+use diagnostic::Diagnostic;
+use eval::Origins;
+use lower::Overrides;
+use scene::Scene;
+use source::Sources;
+use span::SourceId;
+
+/// What compiling a source gives.
+#[derive(Debug)]
+pub struct Compiled {
+    /// The scene; none where there was an error.
+    pub scene: Option<Scene>,
+    /// Where the primitives of the scene came from.
+    pub origins: Origins,
+    /// Errors and warnings, by place.
+    pub diagnostics: Vec<Diagnostic>,
+    /// One line for each default that was chosen for the user.
+    pub notes: Vec<String>,
+}
+
+/// Compiles a source to a scene: parse, check, evaluate, lower. Every stage runs, also after errors, so that
+/// one run reports all that is wrong.
+pub fn compile(sources: &Sources, id: SourceId, overrides: &Overrides) -> Compiled {
+    let text = &sources.get(id).text;
+    let (tree, mut diagnostics) = syntax::parse(id, text);
+    let (program, found) = check::check(&tree, text);
+    diagnostics.extend(found);
+    let (things, found) = eval::eval(&program);
+    diagnostics.extend(found);
+    let lowered = lower::lower(&things, overrides);
+    diagnostics.extend(lowered.diagnostics);
+    diagnostics.sort_by_key(|diagnostic| (diagnostic.primary.span, diagnostic.code));
+    diagnostics.dedup();
+    let scene = lowered.scene.filter(|_| !diagnostic::any_errors(&diagnostics));
+    Compiled { scene, origins: things.origins, diagnostics, notes: lowered.notes }
+}

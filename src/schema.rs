@@ -117,6 +117,9 @@ const ANY: Range = Range { low: f64::NEG_INFINITY, high: f64::INFINITY, above: f
 const POSITIVE: Range = Range { low: 0.0, high: f64::INFINITY, above: true };
 const NOT_NEGATIVE: Range = Range { low: 0.0, high: f64::INFINITY, above: false };
 
+/// Of a reflectance: a surface that gives back more than it receives is refused.
+const REFLECTANCE: Range = within(0.0, 1.0);
+
 const fn within(low: f64, high: f64) -> Range {
     Range { low, high, above: false }
 }
@@ -187,6 +190,14 @@ pub struct Key<T> {
     place: Place,
     ty: PhantomData<T>,
 }
+
+impl<T> Clone for Key<T> {
+    fn clone(&self) -> Key<T> {
+        *self
+    }
+}
+
+impl<T> Copy for Key<T> {}
 
 #[derive(Clone, Copy)]
 enum Place {
@@ -433,13 +444,13 @@ kinds! {
     /// Lambertian: scatters evenly, like plaster or paper. The report's opaque material.
     Material diffuse "diffuse" {
         /// Reflectance.
-        COLOR "color": Color = Value(DEFAULT_COLOR), NOT_NEGATIVE;
+        COLOR "color": Color = Value(DEFAULT_COLOR), REFLECTANCE;
     }
 
     /// A perfect mirror. The report's specular material.
     Material mirror "mirror" {
         /// Reflectance, the same at every angle.
-        COLOR "color": Color = Value("#f8f8f8"), NOT_NEGATIVE;
+        COLOR "color": Color = Value("#f8f8f8"), REFLECTANCE;
     }
 
     /// Glass, water and the like: refraction by Snell's law, reflection by Fresnel's equations. The report's
@@ -448,7 +459,7 @@ kinds! {
         /// Refractive index.
         IOR "ior": Number = Value("1.5"), within(0.1, 10.0);
         /// White light has this colour after travelling `depth` inside.
-        TINT "tint": Color = Value("white"), NOT_NEGATIVE;
+        TINT "tint": Color = Value("white"), REFLECTANCE;
         /// See `tint`.
         DEPTH "depth": Length = Value("1cm"), POSITIVE;
         /// From 0, polished, to 1, frosted (GGX with α = roughness²).
@@ -458,7 +469,7 @@ kinds! {
     /// A conductor: GGX microfacets, single scattering, with Schlick's Fresnel term.
     Material metal "metal" {
         /// Reflectance at normal incidence.
-        COLOR "color": Color = Value("#e0e0e0"), NOT_NEGATIVE;
+        COLOR "color": Color = Value("#e0e0e0"), REFLECTANCE;
         /// From 0, polished, to 1, rough (GGX with α = roughness²).
         ROUGHNESS "roughness": Number = Value("0"), within(0.0, 1.0);
     }
@@ -466,7 +477,7 @@ kinds! {
     /// A clear coat over a diffuse base; light reflected inside the coat is counted.
     Material plastic "plastic" {
         /// Reflectance of the base.
-        COLOR "color": Color = Value(DEFAULT_COLOR), NOT_NEGATIVE;
+        COLOR "color": Color = Value(DEFAULT_COLOR), REFLECTANCE;
         /// Refractive index of the coat.
         IOR "ior": Number = Value("1.5"), within(1.0, 10.0);
         /// Of the coat: from 0, polished, to 1, rough (GGX with α = roughness²).

@@ -45,7 +45,9 @@ impl Dump<'_> {
     fn body(&mut self, body: &Body) {
         for entry in &body.entries {
             match entry {
-                Entry::Field(field) => self.expr(&format!("{}: ", named(self.text, &field.name)), &field.value),
+                Entry::Field(field) => {
+                    self.expr(&format!("{}: ", named(self.text, &field.name)), &field.value)
+                }
                 Entry::Statement(statement) => self.statement(statement),
                 Entry::Broken(broken) => {
                     let name = broken.name.as_ref().map_or("-", |name| named(self.text, name));
@@ -101,7 +103,8 @@ impl Dump<'_> {
                 line(format!("call {}", function.text));
                 self.inside(|dump| {
                     for argument in arguments {
-                        let name = argument.name.as_ref().map_or(String::new(), |name| format!("{}: ", name.text));
+                        let name =
+                            argument.name.as_ref().map_or(String::new(), |name| format!("{}: ", name.text));
                         dump.expr(&name, &argument.value);
                     }
                 });

@@ -22,8 +22,8 @@ pub(super) type Deep<T> = (T, usize);
 
 /// The words that cannot be names, those of statements and operators still to come among them.
 const RESERVED: &[&str] = &[
-    "let", "material", "and", "or", "not", "true", "false", "param", "part", "import", "as", "for", "in", "if",
-    "then", "else", "fn", "to", "assert",
+    "let", "material", "and", "or", "not", "true", "false", "param", "part", "import", "as", "for", "in",
+    "if", "then", "else", "fn", "to", "assert",
 ];
 
 /// Whether a word is one of the language, and so no name.
@@ -374,7 +374,9 @@ impl<'t> Builder<'t> {
     fn lone(&self, word: &Node, span: Span, top: bool) -> Entry {
         let name = self.name(word);
         self.report(match name.text.as_str() {
-            keyword @ ("let" | "material") if top || keyword == "let" => errors::missing_name(keyword, name.span),
+            keyword @ ("let" | "material") if top || keyword == "let" => {
+                errors::missing_name(keyword, name.span)
+            }
             word if is_reserved(word) && word != "material" => errors::reserved(word, name.span),
             word if top => errors::missing_body(word, name.span),
             word => errors::lone_name(word, name.span),

@@ -8,9 +8,9 @@
 //! A line end does not separate inside parentheses, behind an operator, `=` or `:`, and before a line that
 //! starts with a binary operator other than `-`, with `.member` or with `{`.
 
+use super::MAX_DEPTH;
 use super::ast::Comment;
 use super::errors::{self, Sink};
-use super::MAX_DEPTH;
 use crate::span::{SourceId, Span};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -533,7 +533,12 @@ impl<'t> Cutter<'t> {
             Some(level) if level.bracket != b'{' && closer != b'}' => {
                 let right = closer_of(level.bracket);
                 let opened = self.span(level.at, level.at + 1);
-                self.out.sink.push(errors::wrong_closer(place, opened, char::from(closer), char::from(right)));
+                self.out.sink.push(errors::wrong_closer(
+                    place,
+                    opened,
+                    char::from(closer),
+                    char::from(right),
+                ));
                 self.edits.push((self.at..self.at + 1, right));
                 self.pop(1);
             }
@@ -555,7 +560,8 @@ impl<'t> Cutter<'t> {
     /// this token where there is enough of it, else by blotting them.
     fn close_above(&mut self, keep: usize, seen: Option<Span>) {
         self.report_unclosed(keep, seen);
-        let closers: Vec<u8> = self.levels[keep..].iter().rev().map(|level| closer_of(level.bracket)).collect();
+        let closers: Vec<u8> =
+            self.levels[keep..].iter().rev().map(|level| closer_of(level.bracket)).collect();
         if self.at - self.end >= closers.len() {
             for (index, closer) in closers.iter().enumerate() {
                 self.edits.push((self.end + index..self.end + index + 1, *closer));

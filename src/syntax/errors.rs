@@ -70,7 +70,9 @@ pub(super) fn unexpected_value(token: &str, span: Span) -> Diagnostic {
     match token {
         "[" => diagnostic.help("several values stand in parentheses: `(0, 1, 0)m`"),
         "{" => diagnostic.help("name the kind before the brace: `sphere { … }`"),
-        "'" | "“" | "”" | "‘" | "’" => diagnostic.help("text stands in straight double quotes: `\"text\"`"),
+        "'" | "“" | "”" | "‘" | "’" => {
+            diagnostic.help("text stands in straight double quotes: `\"text\"`")
+        }
         "+" => diagnostic.help("a positive number has no sign"),
         "!" => diagnostic.help("write `not`"),
         "=" => diagnostic.help("write one `=` or `:` and then the value"),
@@ -137,7 +139,9 @@ pub(super) fn reserved(word: &str, span: Span) -> Diagnostic {
 
 /// A word of the language where a value should stand.
 pub(super) fn reserved_value(word: &str, span: Span) -> Diagnostic {
-    unexpected(word, span).at("a value belongs here").help(format!("`{word}` is a word of the language, not a value"))
+    unexpected(word, span)
+        .at("a value belongs here")
+        .help(format!("`{word}` is a word of the language, not a value"))
 }
 
 /// Nothing where a value should stand; `before` is what it should follow.
@@ -359,7 +363,8 @@ pub(super) fn bad_number(text: &str, span: Span) -> Diagnostic {
         return diagnostic.help("digits follow the `e`: `1e-3`");
     }
     if text.matches('.').count() > 1 {
-        return diagnostic.help("a number has one decimal point; several numbers stand in parentheses: `(1, 2, 3)`");
+        return diagnostic
+            .help("a number has one decimal point; several numbers stand in parentheses: `(1, 2, 3)`");
     }
     diagnostic.help("numbers are written `3`, `0.5` or `1e-3`")
 }

@@ -1,0 +1,474 @@
+//! One function for each thing that can be wrong with names, types, units and fields.
+
+use super::functions::Function;
+use super::make::suggested_unit;
+use super::types::{Element, Type, describe_wanted, list};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::schema::{Field, FieldType, KindId, Preset, Word};
+use crate::span::Span;
+use crate::syntax::ast::{Keyword, Name};
+use crate::units::{self, Dim};
+
+/// The candidate that is probably meant: at most a third of the letters away.
+pub(super) fn closest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
+    let limit = (name.chars().count() / 3).max(1);
+    let lower = name.to_lowercase();
+    candidates
+        .iter()
+        .map(|candidate| {
+            let distance = strsim::damerau_levenshtein(name, candidate);
+            // Another case of the same letters is the nearest miss there is.
+            (if candidate.to_lowercase() == lower { 0 } else { distance }, *candidate)
+        })
+        .filter(|(distance, _)| *distance <= limit)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, candidate)| candidate)
+}
+
+fn quoted(names: &[&str]) -> String {
+    list(names.iter().map(|name| format!("`{name}`")).collect(), "and")
+}
+
+pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) -> Diagnostic {
+    let diagnostic =
+        Diagnostic::new(code, format!("unknown {what} `{}`", name.text), name.span).at("not known here");
+    match closest(&name.text, candidates) {
+        Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
+        None if what == "unit" => diagnostic.help(format!("the units are {}", quoted(candidates))),
+        None if what == "kind" => diagnostic.help(format!("the kinds known here are {}", quoted(candidates))),
+        None if what == "name" => diagnostic.help(format!("declare it: `let {} = …`", name.text)),
+        None => diagnostic,
+    }
+}
+
+pub(super) fn field_at_top_level(name: &Name) -> Diagnostic {
+    Diagnostic::new(Code::E0301, format!("`{}` belongs to no thing", name.text), name.span)
+        .at("a field stands inside `{}`")
+        .help("a file holds things such as `sphere { … }`, and definitions such as `let r = 5cm`")
+}
+
+pub(super) fn duplicate(name: &Name, first: Option<&Name>) -> Diagnostic {
+    let diagnostic = Diagnostic::new(Code::E0102, format!("`{}` is declared twice", name.text), name.span)
+        .at("again here")
+        .help("give one of them another name; a value is never changed once it is declared");
+    match first {
+        Some(first) => diagnostic.label(first.span, "first declared here"),
+        None => diagnostic,
+    }
+}
+
+pub(super) fn shadows(name: &Name, outer: &Name) -> Diagnostic {
+    Diagnostic::new(Code::E0103, format!("`{}` hides a name of the scope around it", name.text), name.span)
+        .at("declared again")
+        .label(outer.span, "already means this")
+        .help("give the inner one another name")
+}
+
+pub(super) fn built_in(name: &Name, what: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0103, format!("`{}` is {what}, and cannot be declared", name.text), name.span)
+        .at(format!("{what} already"))
+        .help(format!("choose another name, such as `my_{}`", name.text))
+}
+
+pub(super) fn cycle(names: &[&Name]) -> Diagnostic {
+    let Some(first) = names.first() else {
+        unreachable!("only what has a name can be used, and so lie on a cycle")
+    };
+    let path: Vec<String> = names.iter().chain([first]).map(|name| format!("`{}`", name.text)).collect();
+    let message = match names.len() {
+        1 => format!("`{}` is defined by itself", first.text),
+        _ => format!(
+            "{} are defined by each other",
+            quoted(&names.iter().map(|n| &*n.text).collect::<Vec<_>>())
+        ),
+    };
+    let mut diagnostic = Diagnostic::new(Code::E0104, message, first.span).at("the cycle begins here");
+    for pair in names.windows(2) {
+        diagnostic = diagnostic.label(pair[1].span, format!("used by `{}`", pair[0].text));
+    }
+    diagnostic.help(format!("break the cycle {}", path.join(" → ")))
+}
+
+pub(super) fn unused(name: &Name) -> Diagnostic {
+    Diagnostic::new(Code::W0106, format!("`{}` is never used", name.text), name.span)
+        .at("declared here")
+        .help("remove it; a prototype is drawn where its name stands before `{}`")
+}
+
+pub(super) fn wrong_keyword(keyword: Keyword, name: &Name, value: Span, ty: Type) -> Diagnostic {
+    let (message, help) = match keyword {
+        Keyword::Let => {
+            (format!("`let {}` names a material", name.text), format!("write `material {} = …`", name.text))
+        }
+        Keyword::Material => (
+            format!("`material {}` wants a material, this is {}", name.text, ty.describe()),
+            format!("write `let {} = …`", name.text),
+        ),
+    };
+    Diagnostic::new(Code::E0201, message, value).at(ty.describe()).help(help)
+}
+
+pub(super) fn not_a_kind(name: &Name, ty: Type) -> Diagnostic {
+    let help = match ty {
+        Type::Thing(kind) => format!(
+            "to make several alike, name a prototype: `let {} = {} {{ … }}`",
+            name.text,
+            kind.get().name
+        ),
+        _ => "a kind or a prototype stands before `{`".to_string(),
+    };
+    Diagnostic::new(
+        Code::E0201,
+        format!("`{}` is {}, and makes no things", name.text, ty.describe()),
+        name.span,
+    )
+    .at("not a kind")
+    .help(help)
+}
+
+pub(super) fn material_drawn(name: &Name) -> Diagnostic {
+    Diagnostic::new(
+        Code::E0305,
+        format!("`{}` is a material, which is not drawn by itself", name.text),
+        name.span,
+    )
+    .at("no surface here")
+    .help(format!("name it with `material NAME = {} {{ … }}`, or give it to a shape's `material`", name.text))
+}
+
+pub(super) fn block_inside(name: &Name, kind: KindId) -> Diagnostic {
+    let name_text = kind.get().name;
+    let help = match name_text {
+        "lens" => "put it into the `camera`, or at the top level",
+        _ => "move it to the top level",
+    };
+    Diagnostic::new(Code::E0305, format!("`{name_text}` is no part of a group"), name.span)
+        .at("not here")
+        .help(help)
+}
+
+pub(super) fn cannot_hold(name: &Name, outer: KindId) -> Diagnostic {
+    Diagnostic::new(Code::E0301, format!("`{}` cannot hold things", outer.get().name), name.span)
+        .at(format!("`{}` does not belong inside", name.text))
+        .help("put both into a `group { … }`")
+}
+
+pub(super) fn unknown_field(kind: KindId, name: &Name, free: &[&str], all: &[&str]) -> Diagnostic {
+    let diagnostic = Diagnostic::new(
+        Code::E0301,
+        format!("`{}` has no field `{}`", kind.get().name, name.text),
+        name.span,
+    )
+    .at("unknown field");
+    match closest(&name.text, free) {
+        Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
+        None => diagnostic.help(format!("its fields are {}", quoted(all))),
+    }
+}
+
+pub(super) fn repeated(name: &Name, first: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0303, format!("`{}` is given twice", name.text), name.span)
+        .at("again here")
+        .label(first, "first given here")
+        .help("keep one of them")
+}
+
+pub(super) fn conflict(kind: KindId, a: &str, b: &str, first: Span, second: Option<Span>) -> Diagnostic {
+    let (message, here) = (format!("`{a}` and `{b}` exclude each other"), "one of the two");
+    let diagnostic = Diagnostic::new(Code::E0304, message, second.unwrap_or(first)).at(here);
+    match second {
+        Some(_) => diagnostic.label(first, "the other").help("keep one of them"),
+        None => diagnostic.help(format!(
+            "the prototype gives the other already; begin with `{} {{ … }}` instead",
+            kind.get().name
+        )),
+    }
+}
+
+pub(super) fn missing(kind: KindId, field: &Field, place: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0302, format!("`{}` needs `{}`", kind.get().name, field.name), place)
+        .at(format!("without `{}`", field.name))
+        .help(format!("add `{}: {}`. {}", field.name, example(field), field.doc))
+}
+
+/// A value as the field wants it, to show.
+fn example(field: &Field) -> String {
+    if let Preset::Value(value) = field.default {
+        return value.to_string();
+    }
+    match field.ty {
+        FieldType::Scalar(dim) if dim == units::LENGTH => "10cm".into(),
+        FieldType::Scalar(dim) => format!("10{}", dim.example_unit()),
+        FieldType::Tuple(count, dim) => {
+            let parts = ["1", "2", "3"];
+            format!("({}){}", parts[..count.min(3)].join(", "), dim.example_unit())
+        }
+        _ => "…".into(),
+    }
+}
+
+pub(super) fn missing_one_of(kind: KindId, names: &[&str], place: Span) -> Diagnostic {
+    let names = list(names.iter().map(|name| format!("`{name}`")).collect(), "or");
+    Diagnostic::new(Code::E0302, format!("`{}` needs {names}", kind.get().name), place)
+        .at("neither is given")
+        .help("add one of them")
+}
+
+pub(super) fn missing_beside(kind: KindId, name: &str, beside: &[&str], place: Span) -> Diagnostic {
+    let others: Vec<&str> = beside.iter().copied().filter(|other| *other != name).collect();
+    Diagnostic::new(
+        Code::E0302,
+        format!("`{}` with {} needs `{name}`", kind.get().name, quoted(&others)),
+        place,
+    )
+    .at(format!("without `{name}`"))
+    .help(format!("add `{name}`"))
+}
+
+pub(super) fn unknown_word(field: &Field, name: &Name, words: &[&str]) -> Diagnostic {
+    let diagnostic =
+        Diagnostic::new(Code::E0101, format!("`{}` does not know `{}`", field.name, name.text), name.span)
+            .at("unknown word");
+    match closest(&name.text, words) {
+        Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
+        None => diagnostic.help(format!("it wants {}", describe_wanted(field.ty))),
+    }
+}
+
+/// A field's value is of another type. `text` is the value as written.
+pub(super) fn mismatch(field: &Field, span: Span, text: &str, ty: Type) -> Diagnostic {
+    let wanted = describe_wanted(field.ty);
+    let message = format!("`{}` wants {wanted}, this is {}", field.name, ty.describe());
+    let code = mismatch_code(field.ty, ty);
+    let diagnostic = Diagnostic::new(code, message, span).at(ty.describe());
+    match code {
+        Code::E0202 | Code::E0204 => with_unit(diagnostic, text, suggested_unit(field.ty)),
+        Code::E0203 => match suggested_unit(field.ty) {
+            Some(unit) => diagnostic.help(format!("write {wanted}, such as `{}`", sample(field.ty, &unit))),
+            None => diagnostic.help("divide by a unit to make it a plain number: `x / 1m`"),
+        },
+        Code::E0205 => diagnostic.help(color_help(text, ty)),
+        Code::E0206 => diagnostic.help("whole numbers have no decimal point; `round(…)` makes one"),
+        Code::E0305 => diagnostic.help("name a thing that stands in the picture: `sphere ball { … }`"),
+        _ => match (field.ty, ty) {
+            (FieldType::Choice(words), _) => diagnostic.help(word_list(words)),
+            (FieldType::Tuple(..) | FieldType::IntTuple(_), _) => {
+                diagnostic.help(format!("write `{}: {}`", field.name, example_tuple(field.ty)))
+            }
+            (FieldType::Made(_), _) => diagnostic.help("such as `diffuse { color: #d94f30 }`"),
+            (FieldType::Transform, _) => {
+                diagnostic.help("such as `scale(2) |> turn(z: 10deg) |> move(0, 1m, 0)`")
+            }
+            _ => diagnostic,
+        },
+    }
+}
+
+fn mismatch_code(wanted: FieldType, ty: Type) -> Code {
+    match (wanted, ty) {
+        (FieldType::OneOf(types), _) => {
+            let codes = types.iter().map(|wanted| mismatch_code(*wanted, ty));
+            codes.filter(|code| *code != Code::E0201).min().unwrap_or(Code::E0201)
+        }
+        (FieldType::Color, Type::Scalar(_) | Type::Tuple(3, _)) => Code::E0205,
+        (FieldType::Int, Type::Scalar(e)) | (FieldType::IntTuple(2), Type::Tuple(2, e))
+            if e.fits(units::NONE) =>
+        {
+            Code::E0206
+        }
+        (FieldType::Scalar(dim), Type::Scalar(e)) => unit_code(dim, e),
+        (FieldType::Tuple(m, dim), Type::Tuple(n, e)) if m == n => unit_code(dim, e),
+        (FieldType::Int, Type::Scalar(_)) | (FieldType::IntTuple(2), Type::Tuple(2, _)) => Code::E0203,
+        (FieldType::Target, Type::Made(..)) | (FieldType::Target | FieldType::Named(_), Type::Thing(_)) => {
+            Code::E0305
+        }
+        (FieldType::Named(_), Type::Made(..)) => Code::E0305,
+        _ => Code::E0201,
+    }
+}
+
+fn unit_code(wanted: Dim, found: Element) -> Code {
+    match found.dim() == units::NONE {
+        true if wanted == units::ANGLE => Code::E0204,
+        true => Code::E0202,
+        false => Code::E0203,
+    }
+}
+
+/// Help for a bare number where a quantity is wanted; a literal can be mended blindly only by its author, who
+/// alone knows the unit, so no edit is offered.
+fn with_unit(diagnostic: Diagnostic, text: &str, unit: Option<String>) -> Diagnostic {
+    let Some(unit) = unit else { return diagnostic };
+    let text = if text.is_empty() || text.len() > 40 || text.contains('\n') { "(…)" } else { text };
+    let bare = text.starts_with('(') || text.bytes().all(|b| b.is_ascii_digit() || b == b'.');
+    let shown = if bare { text.to_string() } else { format!("({text})") };
+    let help = match unit.as_str() {
+        "m" => format!("write `{shown}m`, `{shown}cm` or `{shown}mm`"),
+        unit => format!("write `{shown}{unit}`"),
+    };
+    diagnostic.help(help)
+}
+
+fn sample(ty: FieldType, unit: &str) -> String {
+    match ty {
+        FieldType::OneOf(types) => types
+            .iter()
+            .find(|ty| suggested_unit(**ty).is_some())
+            .map_or(String::new(), |ty| sample(*ty, unit)),
+        FieldType::Tuple(..) => example_tuple(ty),
+        _ if unit == "m" => "8cm".into(),
+        _ => format!("30{unit}"),
+    }
+}
+
+fn example_tuple(ty: FieldType) -> String {
+    match ty {
+        FieldType::IntTuple(_) => "(640, 480)".into(),
+        FieldType::Tuple(_, dim) => format!("(1, 2, 3){}", dim.example_unit()),
+        _ => "…".into(),
+    }
+}
+
+fn word_list(words: &[Word]) -> String {
+    list(words.iter().map(|word| format!("`{}`", word.name)).collect(), "or")
+}
+
+fn color_help(text: &str, ty: Type) -> String {
+    match ty {
+        Type::Tuple(..) if text.starts_with('(') && text.ends_with(')') && text.len() < 60 => {
+            format!("write `rgb{text}` for a linear colour, `srgb{text}` for one as colour pickers show it")
+        }
+        _ => "write `#d94f30`, `rgb(1, 0.5, 0)` or a name such as `orange`".into(),
+    }
+}
+
+pub(super) fn component(span: Span, text: &str, found: Element, others: Element) -> Diagnostic {
+    let (found_text, others_text) = (Type::Scalar(found).describe(), Type::Scalar(others).describe());
+    let message = format!("one component is {found_text}, another {others_text}");
+    let code = match (found.dim() == units::NONE, others.dim()) {
+        (true, units::ANGLE) => Code::E0204,
+        (true, _) => Code::E0202,
+        (false, _) => Code::E0203,
+    };
+    let diagnostic = Diagnostic::new(code, message, span).at(found_text);
+    match code {
+        Code::E0203 => diagnostic.help("the components of a triple have one dimension"),
+        _ => with_unit(diagnostic, text, Some(others.dim().example_unit())),
+    }
+}
+
+pub(super) fn component_not_number(span: Span, ty: Type) -> Diagnostic {
+    Diagnostic::new(
+        Code::E0201,
+        format!("a component is a number or a quantity, this is {}", ty.describe()),
+        span,
+    )
+    .at(ty.describe())
+}
+
+pub(super) fn long_tuple(span: Span, count: usize) -> Diagnostic {
+    Diagnostic::new(Code::E0201, format!("{count} components, where two or three are possible"), span)
+        .at(format!("{count} components"))
+}
+
+pub(super) fn unit_on_quantity(unit: &Name, value: Span, ty: Type) -> Diagnostic {
+    let message = match ty {
+        Type::Scalar(_) | Type::Tuple(..) => "this has a unit already".to_string(),
+        _ => format!("a unit goes on numbers, this is {}", ty.describe()),
+    };
+    Diagnostic::new(Code::E0201, message, unit.span)
+        .at("a second unit")
+        .label(value, ty.describe())
+        .help("remove one of them")
+}
+
+pub(super) fn no_member(member: &Name, ty: Type) -> Diagnostic {
+    let help = match ty {
+        Type::Tuple(2, _) => "it has `.x` and `.y`",
+        Type::Tuple(..) => "it has `.x`, `.y` and `.z`",
+        _ => "a triple has `.x`, `.y` and `.z`",
+    };
+    Diagnostic::new(Code::E0101, format!("{} has no member `{}`", ty.describe(), member.text), member.span)
+        .at("unknown member")
+        .help(help)
+}
+
+pub(super) fn operand(symbol: &str, wanted: &str, span: Span, ty: Type) -> Diagnostic {
+    Diagnostic::new(Code::E0201, format!("`{symbol}` wants {wanted}, this is {}", ty.describe()), span)
+        .at(ty.describe())
+}
+
+pub(super) fn operands(symbol: &str, at: Span, [a, b]: [(Span, Type); 2]) -> Diagnostic {
+    let message = format!("`{symbol}` cannot join {} and {}", a.1.describe(), b.1.describe());
+    Diagnostic::new(Code::E0201, message, at)
+        .at("these do not fit")
+        .label(a.0, a.1.describe())
+        .label(b.0, b.1.describe())
+}
+
+pub(super) fn sum(symbol: &str, at: Span, [a, b]: [(Span, Type); 2]) -> Diagnostic {
+    let message =
+        format!("`{symbol}` wants two of one dimension, these are {} and {}", a.1.describe(), b.1.describe());
+    let diagnostic = Diagnostic::new(Code::E0207, message, at).at("these do not add up");
+    let bare = [a, b]
+        .iter()
+        .any(|(_, ty)| matches!(ty, Type::Scalar(e) | Type::Tuple(_, e) if e.dim() == units::NONE));
+    let diagnostic = diagnostic.label(a.0, a.1.describe()).label(b.0, b.1.describe());
+    if bare { diagnostic.help("give the number the unit of the other") } else { diagnostic }
+}
+
+pub(super) fn exponent(at: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0207, "the exponents of this unit grow beyond reason", at).at("too high a power")
+}
+
+pub(super) fn root(span: Span, ty: Type) -> Diagnostic {
+    Diagnostic::new(Code::E0207, format!("the root of {} has no unit", ty.describe()), span)
+        .at(ty.describe())
+        .help("the exponents must be even: the root of `m2` is `m`")
+}
+
+pub(super) fn argument_count(function: Function, span: Span, count: usize) -> Diagnostic {
+    let arguments = if count == 1 { "1 argument".to_string() } else { format!("{count} arguments") };
+    Diagnostic::new(Code::E0201, format!("`{}` does not take {arguments}", function.name()), span)
+        .at(arguments)
+        .help(format!("call it as `{}`. {}", function.signature(), function.doc()))
+}
+
+pub(super) fn turn_axis(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0201, "`turn` turns about one axis, `x`, `y` or `z`", span)
+        .at("about which axis?")
+        .help("such as `turn(y: 30deg)`; chain several with `|>`")
+}
+
+pub(super) fn named_argument(function: Function, name: &Name) -> Diagnostic {
+    Diagnostic::new(Code::E0201, format!("`{}` does not name its arguments", function.name()), name.span)
+        .at("a name here")
+        .help(format!("call it as `{}`", function.signature()))
+}
+
+pub(super) fn argument(function: Function, wanted: Dim, span: Span, text: &str, ty: Type) -> Diagnostic {
+    let message = format!("`{}` wants {wanted}, this is {}", function.name(), ty.describe());
+    let code = match ty {
+        Type::Scalar(element) => unit_code(wanted, element),
+        _ => Code::E0201,
+    };
+    let diagnostic = Diagnostic::new(code, message, span).at(ty.describe());
+    match code {
+        Code::E0202 | Code::E0204 => with_unit(diagnostic, text, Some(wanted.example_unit())),
+        Code::E0203 if wanted == units::NONE => {
+            diagnostic.help("divide by a unit to make it a plain number: `x / 1m`")
+        }
+        _ => diagnostic,
+    }
+}
+
+pub(super) fn triple_wanted(function: Function, span: Span, ty: Type, dim: Option<Dim>) -> Diagnostic {
+    let of = dim.map_or("a triple".to_string(), |dim| describe_wanted(FieldType::Tuple(3, dim)));
+    let code = match (ty, dim) {
+        (Type::Tuple(3, element), Some(dim)) => unit_code(dim, element),
+        _ => Code::E0201,
+    };
+    Diagnostic::new(code, format!("`{}` wants {of}, this is {}", function.name(), ty.describe()), span)
+        .at(ty.describe())
+        .help(format!("call it as `{}`", function.signature()))
+}

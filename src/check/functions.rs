@@ -1,0 +1,315 @@
+//! The built-in functions and what they take.
+
+use super::types::{Element, NUMBER, Type};
+use super::{Checker, Expr, ExprKind, errors};
+use crate::diagnostic::Code;
+use crate::span::Span;
+use crate::syntax::ast::{Argument, Name};
+use crate::units::{self, ANGLE, LENGTH, TEMPERATURE};
+
+macro_rules! functions {
+    ($($(#[doc = $doc:literal])* $variant:ident $name:literal $signature:literal,)*) => {
+        /// A built-in function.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Function { $($(#[doc = $doc])* $variant,)* }
+
+        impl Function {
+            /// Every function, in the order of the reference.
+            pub const ALL: &'static [Function] = &[$(Function::$variant,)*];
+
+            /// As written.
+            pub fn name(self) -> &'static str {
+                match self { $(Function::$variant => $name,)* }
+            }
+
+            /// How it is called.
+            pub fn signature(self) -> &'static str {
+                match self { $(Function::$variant => $signature,)* }
+            }
+
+            /// What it gives.
+            pub fn doc(self) -> &'static str {
+                match self { $(Function::$variant => concat!($($doc),*).trim_ascii(),)* }
+            }
+        }
+    };
+}
+
+functions! {
+    /// Sine of an angle.
+    Sin "sin" "sin(angle)",
+    /// Cosine of an angle.
+    Cos "cos" "cos(angle)",
+    /// Tangent of an angle.
+    Tan "tan" "tan(angle)",
+    /// The angle between −90° and 90° with this sine.
+    Asin "asin" "asin(number)",
+    /// The angle between 0° and 180° with this cosine.
+    Acos "acos" "acos(number)",
+    /// The angle of the point (x, y) from the x axis.
+    Atan2 "atan2" "atan2(y, x)",
+    /// Square root; of an area, a length.
+    Sqrt "sqrt" "sqrt(value)",
+    /// Without its sign.
+    Abs "abs" "abs(value)",
+    /// The least of them.
+    Min "min" "min(a, b, …)",
+    /// The greatest of them.
+    Max "max" "max(a, b, …)",
+    /// The value, kept between low and high.
+    Clamp "clamp" "clamp(value, low, high)",
+    /// From a at t = 0 to b at t = 1; of quantities, triples and colours.
+    Mix "mix" "mix(a, b, t)",
+    /// The next whole number below.
+    Floor "floor" "floor(number)",
+    /// The next whole number above.
+    Ceil "ceil" "ceil(number)",
+    /// The nearest whole number; halves go away from zero.
+    Round "round" "round(number)",
+    /// The remainder of a / b, with the sign of b.
+    Mod "mod" "mod(a, b)",
+    /// a to the power b.
+    Pow "pow" "pow(a, b)",
+    /// e to a power.
+    Exp "exp" "exp(number)",
+    /// Natural logarithm.
+    Log "log" "log(number)",
+    /// Length of a triple.
+    Length "length" "length(v)",
+    /// The vector of length 1 in the same direction.
+    Normalize "normalize" "normalize(v)",
+    /// Scalar product.
+    Dot "dot" "dot(a, b)",
+    /// Vector product.
+    Cross "cross" "cross(a, b)",
+    /// A linear colour.
+    Rgb "rgb" "rgb(r, g, b)",
+    /// A display-referred colour, as colour pickers show it; each channel from 0 to 1.
+    Srgb "srgb" "srgb(r, g, b)",
+    /// A display-referred colour by hue, saturation and value.
+    Hsv "hsv" "hsv(angle, s, v)",
+    /// The colour of a glowing body, at luminance 1.
+    Blackbody "blackbody" "blackbody(temperature)",
+    /// A placement that enlarges about the origin.
+    Scale "scale" "scale(k) or scale(x, y, z)",
+    /// A placement that turns about one axis: from x to y about z, and so on.
+    Turn "turn" "turn(x: angle), turn(y: angle) or turn(z: angle)",
+    /// A placement that moves.
+    Move "move" "move(x, y, z) or move(point)",
+}
+
+/// Finds a function by name.
+pub fn by_name(name: &str) -> Option<Function> {
+    Function::ALL.iter().copied().find(|function| function.name() == name)
+}
+
+/// What a parameter takes, where that does not depend on the others.
+#[derive(Clone, Copy)]
+enum Wanted {
+    Dim(units::Dim),
+}
+
+impl Checker<'_> {
+    /// Checks a call.
+    pub(super) fn call(&mut self, name: &Name, arguments: &[Argument], span: Span) -> (ExprKind, Type) {
+        let (values, types): (Vec<Expr>, Vec<Type>) =
+            arguments.iter().map(|argument| self.infer(&argument.value)).unzip();
+        let Some(function) = by_name(&name.text) else {
+            let names: Vec<&str> = Function::ALL.iter().map(|function| function.name()).collect();
+            self.report(errors::unknown(Code::E0101, "function", name, &names));
+            return (ExprKind::Invalid, Type::Invalid);
+        };
+        let axis = match self.argument_names(function, arguments) {
+            Ok(axis) => axis,
+            Err(diagnostic) => {
+                self.report(*diagnostic);
+                return (ExprKind::Invalid, Type::Invalid);
+            }
+        };
+        if types.contains(&Type::Invalid) {
+            return (ExprKind::Invalid, Type::Invalid);
+        }
+        let Some(ty) = self.returns(function, span, &values, &types) else {
+            return (ExprKind::Invalid, Type::Invalid);
+        };
+        let mut values = values;
+        if let Some(axis) = axis {
+            // `turn` takes its axis as a first argument from here on.
+            values.insert(0, Expr { kind: ExprKind::Number(axis as f64), span });
+        }
+        (ExprKind::Call { function, arguments: values }, ty)
+    }
+
+    /// Only `turn` names its argument: gives the axis.
+    fn argument_names(
+        &self,
+        function: Function,
+        arguments: &[Argument],
+    ) -> Result<Option<usize>, Box<crate::diagnostic::Diagnostic>> {
+        let mut axis = None;
+        for argument in arguments {
+            match (&argument.name, function) {
+                (None, Function::Turn) => return Err(Box::new(errors::turn_axis(argument.value.span))),
+                (None, _) => {}
+                (Some(name), Function::Turn) => {
+                    axis = ["x", "y", "z"].iter().position(|axis| *axis == name.text);
+                    if axis.is_none() {
+                        return Err(Box::new(errors::turn_axis(name.span)));
+                    }
+                }
+                (Some(name), _) => return Err(Box::new(errors::named_argument(function, name))),
+            }
+        }
+        Ok(axis)
+    }
+
+    fn returns(&mut self, function: Function, span: Span, values: &[Expr], types: &[Type]) -> Option<Type> {
+        use Function::*;
+        let counts: &[usize] = match function {
+            Sin | Cos | Tan | Asin | Acos | Sqrt | Abs | Floor | Ceil | Round | Exp | Log | Length
+            | Normalize | Blackbody | Turn => &[1],
+            Atan2 | Mod | Pow | Dot | Cross => &[2],
+            Clamp | Mix | Rgb | Srgb | Hsv => &[3],
+            Scale | Move => &[1, 3],
+            Min | Max => &[],
+        };
+        if counts.is_empty() && values.len() < 2 || !counts.is_empty() && !counts.contains(&values.len()) {
+            self.report(errors::argument_count(function, span, values.len()));
+            return None;
+        }
+        let number = Wanted::Dim(units::NONE);
+        let mut arguments = Arguments { checker: self, function, values, types };
+        match function {
+            Sin | Cos | Tan => arguments.each(&[Wanted::Dim(ANGLE)], Type::Scalar(NUMBER)),
+            Asin | Acos => arguments.each(&[number], Type::Scalar(Element::Quantity(ANGLE))),
+            Exp | Log => arguments.each(&[number], Type::Scalar(NUMBER)),
+            Pow => arguments.each(&[number, number], Type::Scalar(NUMBER)),
+            Floor | Ceil | Round => arguments.each(&[number], Type::Scalar(Element::Int)),
+            Rgb | Srgb => arguments.each(&[number, number, number], Type::Color),
+            Hsv => arguments.each(&[Wanted::Dim(ANGLE), number, number], Type::Color),
+            Blackbody => arguments.each(&[Wanted::Dim(TEMPERATURE)], Type::Color),
+            Turn => arguments.each(&[Wanted::Dim(ANGLE)], Type::Transform),
+            Scale => arguments.each(&[number, number, number][..values.len()], Type::Transform),
+            Move if values.len() == 3 => arguments.each(&[Wanted::Dim(LENGTH); 3], Type::Transform),
+            Move => {
+                arguments.triple(0, Some(LENGTH))?;
+                Some(Type::Transform)
+            }
+            Atan2 => arguments.joined(0..2).map(|_| Type::Scalar(Element::Quantity(ANGLE))),
+            Min | Max | Clamp | Mod => arguments.joined(0..values.len()).map(Type::Scalar),
+            Abs => arguments.joined(0..1).map(Type::Scalar),
+            Sqrt => {
+                let element = arguments.joined(0..1)?;
+                arguments.root(element)
+            }
+            Mix => arguments.mix(),
+            Length => arguments.triple(0, None).map(Type::Scalar),
+            Normalize => arguments.triple(0, None).map(|_| Type::Tuple(3, NUMBER)),
+            Dot | Cross => {
+                let (a, b) = (arguments.triple(0, None)?, arguments.triple(1, None)?);
+                let Some(dim) = a.dim().times(b.dim()) else {
+                    arguments.checker.report(errors::exponent(span));
+                    return None;
+                };
+                let element = Element::Quantity(dim);
+                Some(if function == Dot { Type::Scalar(element) } else { Type::Tuple(3, element) })
+            }
+        }
+    }
+}
+
+/// The arguments of one call, being checked.
+struct Arguments<'c, 'a, 'v> {
+    checker: &'c mut Checker<'a>,
+    function: Function,
+    values: &'v [Expr],
+    types: &'v [Type],
+}
+
+impl Arguments<'_, '_, '_> {
+    /// Each argument is a quantity of its own dimension.
+    fn each(&mut self, wanted: &[Wanted], gives: Type) -> Option<Type> {
+        let mut sound = true;
+        for (index, Wanted::Dim(dim)) in wanted.iter().enumerate() {
+            let fits = matches!(self.types[index], Type::Scalar(element) if element.fits(*dim));
+            if !fits {
+                sound = false;
+                let span = self.values[index].span;
+                let text = self.checker.text(span);
+                self.checker.report(errors::argument(self.function, *dim, span, text, self.types[index]));
+            }
+        }
+        sound.then_some(gives)
+    }
+
+    /// The arguments are quantities of one dimension, which this is.
+    fn joined(&mut self, range: std::ops::Range<usize>) -> Option<Element> {
+        let mut joined = Element::Zero;
+        for index in range {
+            let span = self.values[index].span;
+            let Type::Scalar(element) = self.types[index] else {
+                let ty = self.types[index];
+                self.checker.report(errors::argument(self.function, units::NONE, span, "", ty));
+                return None;
+            };
+            joined = match joined.join(element) {
+                Some(both) => both,
+                None => {
+                    let first = (self.values[0].span, Type::Scalar(joined));
+                    self.checker.report(errors::sum(
+                        self.function.name(),
+                        span,
+                        [first, (span, self.types[index])],
+                    ));
+                    return None;
+                }
+            };
+        }
+        Some(joined)
+    }
+
+    fn root(&mut self, element: Element) -> Option<Type> {
+        let root = super::expr::root(element.dim());
+        if root.is_none() {
+            self.checker.report(errors::root(self.values[0].span, self.types[0]));
+        }
+        root.map(|dim| Type::Scalar(Element::Quantity(dim)))
+    }
+
+    fn mix(&mut self) -> Option<Type> {
+        let t_fits = matches!(self.types[2], Type::Scalar(element) if element.fits(units::NONE));
+        if !t_fits {
+            let (span, ty) = (self.values[2].span, self.types[2]);
+            let text = self.checker.text(span);
+            self.checker.report(errors::argument(self.function, units::NONE, span, text, ty));
+            return None;
+        }
+        let plain = |element: Element| if element.dim() == units::NONE { NUMBER } else { element };
+        match (self.types[0], self.types[1]) {
+            (Type::Color, Type::Color) => Some(Type::Color),
+            (Type::Tuple(m, x), Type::Tuple(n, y)) if m == n && x.join(y).is_some() => {
+                x.join(y).map(|element| Type::Tuple(m, plain(element)))
+            }
+            (Type::Scalar(_), Type::Scalar(_)) => {
+                self.joined(0..2).map(|element| Type::Scalar(plain(element)))
+            }
+            _ => {
+                let operands = [(self.values[0].span, self.types[0]), (self.values[1].span, self.types[1])];
+                self.checker.report(errors::operands("mix", self.values[1].span, operands));
+                None
+            }
+        }
+    }
+
+    /// The argument is a triple, of this dimension where one is wanted; gives what it counts.
+    fn triple(&mut self, index: usize, dim: Option<units::Dim>) -> Option<Element> {
+        match self.types[index] {
+            Type::Tuple(3, element) if dim.is_none_or(|dim| element.fits(dim)) => Some(element),
+            ty => {
+                let span = self.values[index].span;
+                self.checker.report(errors::triple_wanted(self.function, span, ty, dim));
+                None
+            }
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! One function for each thing that can be wrong with a value.
+
+use super::{MAX_LEVELS, MAX_THINGS, Value};
+use crate::check::Function;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::schema::{Field, FieldType, KindId, Range};
+use crate::span::Span;
+use crate::syntax::ast::BinaryOp;
+use crate::units::{self, Dim};
+
+/// A number as a person would write it.
+fn show(x: f64) -> String {
+    let size = x.abs();
+    if size != 0.0 && !(1e-4..1e7).contains(&size) { format!("{x:e}") } else { format!("{x}") }
+}
+
+fn show_value(value: &Value) -> String {
+    match value {
+        Value::Number(x) => show(*x),
+        Value::Tuple(v) | Value::Color(v) => format!("({}, {}, {})", show(v.x), show(v.y), show(v.z)),
+        _ => "this".into(),
+    }
+}
+
+/// What the range of a field refuses, or none where the value lies in it.
+pub(super) fn out_of_range(kind: KindId, field: &Field, value: &Value, span: Span) -> Option<Diagnostic> {
+    let parts = match value {
+        Value::Number(x) => vec![*x],
+        Value::Color(c) => c.to_array().to_vec(),
+        Value::Tuple(v) if matches!(field.ty, FieldType::IntTuple(2)) => vec![v.x, v.y],
+        // A point as the target of a field that also takes a distance is not bound by the distance's range.
+        Value::Tuple(v) if matches!(field.ty, FieldType::Tuple(..)) => v.to_array().to_vec(),
+        _ => return None,
+    };
+    let bad = parts.into_iter().find(|part| !field.range.contains(*part))?;
+    let dim = dimension(field.ty);
+    let shown = format!("{}{}", show(bad), dim.example_unit());
+    let allowed = allowed(field.range, dim);
+    if field.ty == FieldType::Color && bad > field.range.high {
+        let message = format!("this `{}` reflects more than it receives", kind.get().name);
+        let diagnostic = Diagnostic::new(Code::E0402, message, span);
+        return Some(
+            diagnostic.at(format!("a channel of {shown}")).help("no channel of a reflectance is above 1"),
+        );
+    }
+    let what = if field.ty == FieldType::Color { "channels of " } else { "" };
+    let message = format!("{what}`{}` must be {allowed}, this is {shown}", field.name);
+    Some(Diagnostic::new(Code::E0401, message, span).at("out of range").help(field.doc.to_string()))
+}
+
+fn dimension(ty: FieldType) -> Dim {
+    match ty {
+        FieldType::Scalar(dim) | FieldType::Tuple(_, dim) => dim,
+        FieldType::OneOf(types) => types.iter().map(|ty| dimension(*ty)).next().unwrap_or(units::NONE),
+        _ => units::NONE,
+    }
+}
+
+fn allowed(range: Range, dim: Dim) -> String {
+    let unit = dim.example_unit();
+    let (low, high) = (show(range.low), show(range.high));
+    match (range.above, range.high == f64::INFINITY) {
+        (true, true) => format!("above {low}{unit}"),
+        (false, true) => format!("{low}{unit} or more"),
+        (true, false) => format!("above {low}{unit} and at most {high}{unit}"),
+        (false, false) => format!("from {low}{unit} to {high}{unit}"),
+    }
+}
+
+pub(super) fn number_not_finite(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0407, "this number is too large to be held", span).at("not finite")
+}
+
+pub(super) fn not_finite(operator: BinaryOp, a: &Value, b: &Value, span: Span) -> Diagnostic {
+    let (a, b) = (show_value(a), show_value(b));
+    let message = format!("`{a} {} {b}` is not finite", operator.symbol());
+    let diagnostic = Diagnostic::new(Code::E0407, message, span).at("not a number to draw with");
+    match operator {
+        BinaryOp::Divide => diagnostic.help("the divisor is 0, or as good as"),
+        _ => diagnostic.help("the result is too large"),
+    }
+}
+
+pub(super) fn inexact(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0407, "this whole number is too large to be exact", span)
+        .at("beyond 2^53")
+        .help("write one of the numbers with a decimal point to compute with real numbers")
+}
+
+pub(super) fn call_not_finite(function: Function, arguments: &[Value], span: Span) -> Diagnostic {
+    let shown: Vec<String> = arguments.iter().map(show_value).collect();
+    let message = format!("`{}({})` is not finite", function.name(), shown.join(", "));
+    Diagnostic::new(Code::E0407, message, span).at("not a number to draw with")
+}
+
+pub(super) fn outside_domain(function: Function, what: &str, arguments: &[Value], span: Span) -> Diagnostic {
+    let shown: Vec<String> = arguments.iter().map(show_value).collect();
+    let message = format!("`{}({})` has no value", function.name(), shown.join(", "));
+    Diagnostic::new(Code::E0407, message, span).at(what.to_string())
+}
+
+pub(super) fn too_many_levels(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0406, format!("more than {MAX_LEVELS} levels of groups"), span)
+        .at("one level too many")
+        .help("put the things of some levels into one group")
+}
+
+pub(super) fn too_many_things(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0406, format!("more than {MAX_THINGS} things"), span)
+        .at("one thing too many")
+        .help("groups within groups multiply: this many no picture can show")
+}

@@ -1,0 +1,158 @@
+//! The built-in functions. Their arguments were checked.
+
+use super::{Value, errors};
+use crate::check::Function;
+use crate::color;
+use crate::diagnostic::Diagnostic;
+use crate::math::{self, DAffine3, DMat3, DVec3, PI};
+use crate::span::Span;
+use std::rc::Rc;
+
+/// Calls a function. The result may not be finite; an error says what no number can answer.
+pub(super) fn call(
+    function: Function,
+    arguments: &[Value],
+    spans: &[Span],
+) -> Result<Value, Box<Diagnostic>> {
+    use Function::*;
+    use Value::{Color, Number, Tuple};
+    let number = |x: f64| Ok(Number(x));
+    let transform = |transform: DAffine3| Ok(Value::Transform(Rc::new(transform)));
+    let wrong = |what: &str| {
+        let span = spans.first().copied().unwrap_or(Span::new(crate::span::SourceId(0), 0, 0));
+        Err(Box::new(errors::outside_domain(function, what, arguments, span)))
+    };
+    match (function, arguments) {
+        (Sin, [Number(x)]) => number(math::sin(*x)),
+        (Cos, [Number(x)]) => number(math::cos(*x)),
+        (Tan, [Number(x)]) => number(math::tan(*x)),
+        (Asin, [Number(x)]) if x.abs() <= 1.0 => number(math::asin(*x)),
+        (Acos, [Number(x)]) if x.abs() <= 1.0 => number(math::acos(*x)),
+        (Asin | Acos, _) => wrong("no angle has a sine or cosine beyond −1 and 1"),
+        (Atan2, [Number(y), Number(x)]) => number(math::atan2(*y, *x)),
+        (Sqrt, [Number(x)]) if *x >= 0.0 => number(x.sqrt()),
+        (Sqrt, _) => wrong("no number has a negative square"),
+        (Abs, [Number(x)]) => number(x.abs()),
+        (Min, values) => number(values.iter().filter_map(as_number).fold(f64::INFINITY, f64::min)),
+        (Max, values) => number(values.iter().filter_map(as_number).fold(f64::NEG_INFINITY, f64::max)),
+        (Clamp, [Number(x), Number(low), Number(high)]) if low <= high => number(x.clamp(*low, *high)),
+        (Clamp, _) => wrong("its `low` lies above its `high`"),
+        (Mix, [Number(a), Number(b), Number(t)]) => number(a * (1.0 - t) + b * t),
+        (Mix, [Tuple(a), Tuple(b), Number(t)]) => Ok(Tuple(*a * (1.0 - t) + *b * *t)),
+        (Mix, [Color(a), Color(b), Number(t)]) => Ok(Color(*a * (1.0 - t) + *b * *t)),
+        (Floor, [Number(x)]) => number(x.floor()),
+        (Ceil, [Number(x)]) => number(x.ceil()),
+        (Round, [Number(x)]) => number(x.round()),
+        (Mod, [Number(_), Number(0.0)]) => wrong("there is no remainder of a division by 0"),
+        (Mod, [Number(a), Number(b)]) => {
+            let remainder = a % b;
+            number(if remainder != 0.0 && (remainder < 0.0) != (*b < 0.0) {
+                remainder + b
+            } else {
+                remainder
+            })
+        }
+        (Pow, [Number(a), Number(b)]) => number(math::pow(*a, *b)),
+        (Exp, [Number(x)]) => number(math::exp(*x)),
+        (Log, [Number(x)]) if *x > 0.0 => number(math::ln(*x)),
+        (Log, _) => wrong("only numbers above 0 have a logarithm"),
+        (Length, [Tuple(v)]) => number(length(*v)),
+        (Normalize, [Tuple(v)]) if *v != DVec3::ZERO => {
+            // Scaled first, so that neither huge nor tiny components leave the numbers on the way.
+            let scaled = *v / v.abs().max_element();
+            Ok(Tuple(scaled / scaled.length()))
+        }
+        (Normalize, _) => wrong("a triple of length 0 has no direction"),
+        (Dot, [Tuple(a), Tuple(b)]) => number(a.dot(*b)),
+        (Cross, [Tuple(a), Tuple(b)]) => Ok(Tuple(a.cross(*b))),
+        (Rgb, [Number(r), Number(g), Number(b)]) => Ok(Color(DVec3::new(*r, *g, *b))),
+        (Srgb, [Number(r), Number(g), Number(b)]) => match [r, g, b].iter().all(|c| (0.0..=1.0).contains(*c))
+        {
+            true => Ok(Color(color::srgb(*r, *g, *b))),
+            false => wrong("a display-referred channel lies between 0 and 1"),
+        },
+        (Hsv, [Number(h), Number(s), Number(v)]) => match [s, v].iter().all(|c| (0.0..=1.0).contains(*c)) {
+            true => Ok(Color(color::hsv(h / (2.0 * PI), *s, *v))),
+            false => wrong("saturation and value lie between 0 and 1"),
+        },
+        (Blackbody, [Number(kelvin)]) if (100.0..=1e9).contains(kelvin) => {
+            Ok(Color(color::blackbody(*kelvin)))
+        }
+        (Blackbody, _) => wrong("a glowing body is between 100K and 1 000 000 000K hot"),
+        (Scale, [Number(k)]) => transform(DAffine3::from_scale(DVec3::splat(*k))),
+        (Scale, [Number(x), Number(y), Number(z)]) => transform(DAffine3::from_scale(DVec3::new(*x, *y, *z))),
+        (Turn, [Number(axis), Number(angle)]) => {
+            transform(DAffine3 { matrix3: turn(*axis as usize, *angle), translation: DVec3::ZERO })
+        }
+        (Move, [Number(x), Number(y), Number(z)]) => {
+            transform(DAffine3::from_translation(DVec3::new(*x, *y, *z)))
+        }
+        (Move, [Tuple(v)]) => transform(DAffine3::from_translation(*v)),
+        // Types were checked, so only what is invalid already comes here.
+        _ => Ok(Value::Invalid),
+    }
+}
+
+fn as_number(value: &Value) -> Option<f64> {
+    match value {
+        Value::Number(x) => Some(*x),
+        _ => None,
+    }
+}
+
+/// Length of a vector, also where its square would overflow.
+fn length(v: DVec3) -> f64 {
+    let greatest = v.abs().max_element();
+    if greatest == 0.0 { 0.0 } else { greatest * (v / greatest).length() }
+}
+
+/// Rotation about an axis by the right-hand rule. Quarter turns are exact.
+fn turn(axis: usize, angle: f64) -> DMat3 {
+    let (sin, cos) = exact_quarter(angle).unwrap_or_else(|| (math::sin(angle), math::cos(angle)));
+    let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut matrix = DMat3::IDENTITY;
+    matrix.col_mut(i)[i] = cos;
+    matrix.col_mut(i)[j] = sin;
+    matrix.col_mut(j)[i] = -sin;
+    matrix.col_mut(j)[j] = cos;
+    matrix
+}
+
+/// Sine and cosine of a multiple of 90°, which radians cannot say exactly.
+fn exact_quarter(angle: f64) -> Option<(f64, f64)> {
+    let quarters = angle / (0.5 * PI);
+    let nearest = quarters.round();
+    if (quarters - nearest).abs() > 1e-14 * quarters.abs().max(1.0) {
+        return None;
+    }
+    Some(match (nearest % 4.0 + 4.0) % 4.0 {
+        0.0 => (0.0, 1.0),
+        1.0 => (1.0, 0.0),
+        2.0 => (0.0, -1.0),
+        _ => (-1.0, 0.0),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turning_follows_the_right_hand() {
+        let quarter = 0.5 * PI;
+        assert_eq!(turn(2, quarter) * DVec3::X, DVec3::Y);
+        assert_eq!(turn(0, quarter) * DVec3::Y, DVec3::Z);
+        assert_eq!(turn(1, quarter) * DVec3::Z, DVec3::X);
+        assert_eq!(turn(1, -quarter) * DVec3::X, DVec3::Z);
+        let eighth = turn(2, 0.25 * PI) * DVec3::X;
+        assert!((eighth - DVec3::new(0.5f64.sqrt(), 0.5f64.sqrt(), 0.0)).length() < 1e-15);
+    }
+
+    #[test]
+    fn the_remainder_has_the_sign_of_the_divisor() {
+        for (a, b, wanted) in [(7.0, 3.0, 1.0), (-7.0, 3.0, 2.0), (7.0, -3.0, -2.0), (6.0, 3.0, 0.0)] {
+            let found = call(Function::Mod, &[Value::Number(a), Value::Number(b)], &[]).unwrap();
+            assert_eq!(found, Value::Number(wanted));
+        }
+    }
+}

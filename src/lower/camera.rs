@@ -1,0 +1,188 @@
+//! The camera: where it stands, what it looks at, and its lens.
+
+use super::{Blocks, Extent, Lowering, errors, shape::unit};
+use crate::eval::{Aim, Focus, Made, ThingId};
+use crate::math::{DVec2, DVec3, PI, atan2, sin, tan};
+use crate::scene::Camera;
+use crate::scene::shape::Bounds;
+use crate::schema::{camera, lens};
+use crate::span::Span;
+
+/// From the middle of the picture towards a camera that was not placed: a three-quarter view.
+const THREE_QUARTER: DVec3 = DVec3::new(0.55, 0.42, 1.0);
+
+/// Angle of view where neither camera nor lens says: 40°.
+const DEFAULT_FOV: f64 = 40.0 / 180.0 * PI;
+
+/// Room left around what a placed camera frames.
+const MARGIN: f64 = 1.08;
+
+impl Lowering<'_> {
+    /// The camera, and the exposure it asks for; none where something is wrong.
+    pub(super) fn camera(
+        &mut self,
+        blocks: &Blocks,
+        size: Option<[u32; 2]>,
+    ) -> Option<(Camera, Option<f64>)> {
+        let made = blocks.camera.map_or_else(|| super::plain(camera::KIND), |thing| thing.made.clone());
+        if !made.is_sound() {
+            return None;
+        }
+        let lens = self.lens(&made, blocks)?;
+        let fov = self.fov(&made, lens.as_deref())?;
+        let [width, height] = size.unwrap_or([4, 3]).map(f64::from);
+        let half_width = tan(0.5 * fov);
+        let half_extent = DVec2::new(half_width, half_width * height / width);
+
+        let (center, radius) = self.middle();
+        let look = match made.given(camera::LOOK) {
+            Some((aim, span)) => self.aim(aim, span)?,
+            None => center,
+        };
+        let position = match made.given(camera::FROM) {
+            Some((from, _)) => from,
+            None => {
+                let half_angle = atan2(half_extent.min_element(), 1.0);
+                let position = look + THREE_QUARTER.normalize() * (MARGIN * radius / sin(half_angle));
+                self.say_placed(blocks.camera.is_some(), position, look);
+                position
+            }
+        };
+        let place = made.given(camera::FROM).map_or(made.span, |(_, span)| span);
+        let Some(forward) = unit(look - position) else {
+            let look_place = made.given(camera::LOOK).map(|(_, span)| span);
+            self.report(errors::looks_at_itself(place, look_place));
+            return None;
+        };
+        let (right, up) = self.upright(&made, forward)?;
+        let (lens_radius, focus) = match &lens {
+            Some(lens) => self.opening(lens, position, forward, look)?,
+            None => (0.0, 1.0),
+        };
+        let camera = Camera { position, right, up, forward, half_extent, lens_radius, focus };
+        Some((camera, self.things.read(&made, camera::EXPOSURE)))
+    }
+
+    /// The camera's own lens, or the one at the top level.
+    fn lens(&mut self, made: &Made, blocks: &Blocks) -> Option<Option<std::rc::Rc<Made>>> {
+        match (made.given(camera::LENS), blocks.lens) {
+            (Some((_, first)), Some(second)) => {
+                self.report(errors::second("lens", second.made.span, first));
+                None
+            }
+            (Some((lens, _)), None) => Some(Some(lens)),
+            (None, lens) => Some(lens.map(|thing| thing.made.clone())),
+        }
+    }
+
+    fn fov(&mut self, made: &Made, lens: Option<&Made>) -> Option<f64> {
+        let focal = lens.and_then(|lens| lens.given(lens::FOCAL));
+        match (made.given(camera::FOV), focal) {
+            (Some((_, fov)), Some((_, focal))) => {
+                self.report(errors::fov_and_focal(fov, focal));
+                None
+            }
+            (Some((fov, _)), None) => Some(fov),
+            (None, Some((focal, _))) => {
+                let sensor = self.things.read(lens?, lens::SENSOR);
+                Some(2.0 * atan2(sensor, 2.0 * focal))
+            }
+            (None, None) => Some(DEFAULT_FOV),
+        }
+    }
+
+    /// The middle of everything that has an end, and the radius of a ball around it.
+    fn middle(&self) -> (DVec3, f64) {
+        let boxes = |lamps: bool| {
+            self.extents.iter().fold(Bounds::EMPTY, |all, extent| match extent {
+                Extent::Box(bounds) => all.union(*bounds),
+                Extent::Lamp(bounds) if lamps => all.union(*bounds),
+                _ => all,
+            })
+        };
+        let seen = boxes(false);
+        let all = if seen.is_empty() { boxes(true) } else { seen };
+        match all.is_empty() {
+            true => (DVec3::ZERO, 1.0),
+            false => (all.center(), (0.5 * all.size().length()).max(f64::MIN_POSITIVE)),
+        }
+    }
+
+    fn aim(&mut self, aim: Aim, span: Span) -> Option<DVec3> {
+        match aim {
+            Aim::Point(point) => Some(point),
+            Aim::Thing(id) => self.center(id, span),
+        }
+    }
+
+    /// The centre of the bounds of a thing or group.
+    fn center(&mut self, id: ThingId, span: Span) -> Option<DVec3> {
+        let mut bounds = Bounds::EMPTY;
+        for extent in &self.extents[self.places(id)?] {
+            match extent {
+                Extent::Box(part) | Extent::Lamp(part) => bounds = bounds.union(*part),
+                Extent::Endless | Extent::Nowhere => {}
+            }
+        }
+        if bounds.is_empty() {
+            self.report(errors::no_middle(span));
+            return None;
+        }
+        Some(bounds.center())
+    }
+
+    /// The unit vectors to the right and up in the picture.
+    fn upright(&mut self, made: &Made, forward: DVec3) -> Option<(DVec3, DVec3)> {
+        let given = made.given(camera::UP);
+        let up = self.things.read(made, camera::UP);
+        let right = unit(up).and_then(|up| parallel_free(forward, up));
+        let right = match (right, given) {
+            (Some(right), _) => Some(right),
+            (None, Some((_, span))) => {
+                self.report(errors::up_along_view(span));
+                None
+            }
+            // Straight up or down, as on a map: north, −z, is at the top.
+            (None, None) => parallel_free(forward, DVec3::NEG_Z),
+        }?;
+        Some((right, right.cross(forward)))
+    }
+
+    /// Radius of the lens, and the distance that is sharp.
+    fn opening(&mut self, lens: &Made, from: DVec3, forward: DVec3, look: DVec3) -> Option<(f64, f64)> {
+        let focus = lens.given(lens::FOCUS);
+        let distance = match focus {
+            Some((Focus::Distance(distance), _)) => distance,
+            Some((Focus::Aim(aim), span)) => (self.aim(aim, span)? - from).dot(forward),
+            None => (look - from).dot(forward),
+        };
+        if !(distance > 0.0 && distance.is_finite()) {
+            let span = focus.map_or(lens.span, |(_, span)| span);
+            self.report(errors::focus_behind(span));
+            return None;
+        }
+        let diameter = match (lens.given(lens::APERTURE), lens.given(lens::FOCAL), lens.given(lens::STOP)) {
+            (Some((aperture, _)), ..) => aperture,
+            (None, Some((focal, _)), Some((stop, _))) => focal / stop,
+            _ => 0.0,
+        };
+        Some((0.5 * diameter, distance))
+    }
+
+    fn say_placed(&mut self, camera: bool, position: DVec3, look: DVec3) {
+        let show = |p: DVec3| format!("({:.3}, {:.3}, {:.3})m", p.x, p.y, p.z);
+        let what = if camera { "the camera has no `from`" } else { "no camera" };
+        let line = format!(
+            "{what}: a three-quarter view that frames everything, as `camera {{ from: {}, look: {} }}`",
+            show(position),
+            show(look)
+        );
+        self.out.notes.push(line);
+    }
+}
+
+/// The unit vector to the right of a view with this upright direction, unless the two are parallel.
+fn parallel_free(forward: DVec3, up: DVec3) -> Option<DVec3> {
+    let right = forward.cross(up);
+    if right.length() > 1e-9 { unit(right) } else { None }
+}

@@ -1,0 +1,127 @@
+//! One function for each thing that can be wrong with a picture as a whole.
+
+use super::MAX_PIXELS;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::span::{SourceId, Span};
+
+/// The beginning of the file, for what is missing from all of it.
+fn start() -> Span {
+    Span::new(SourceId(0), 0, 0)
+}
+
+pub(super) fn second(kind: &str, span: Span, first: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0303, format!("a second `{kind}`"), span)
+        .at("again here")
+        .label(first, "the first")
+        .help("a picture has one; put the fields of both together")
+}
+
+pub(super) fn not_finite_place(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0407, "the placements of this thing leave the numbers", span)
+        .at("nowhere to be drawn")
+}
+
+pub(super) fn glows_beyond(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0407, "the radiance of this light is too large to be held", span)
+        .at("not finite")
+        .help("give it less power, or a larger surface")
+}
+
+pub(super) fn no_direction(field: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0403, format!("`{field}` has length 0, and so no direction"), span)
+        .at("points nowhere")
+        .help("such as `(0, 1, 0)` for upwards")
+}
+
+pub(super) fn flattened(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0403, "this shape is flattened to nothing", span)
+        .at("has no extent left")
+        .help("a `scale` of 0, or sizes too small or too far apart, leave no solid; use factors above 0")
+}
+
+pub(super) fn height_between_sheets(least: f64, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0403, "nothing is left of this hyperboloid", span)
+        .at("ends before the sheets begin")
+        .help(format!(
+            "the sheets begin at |y| = b, so `height` must be above 2b = {least}m; or use `sheets: 1`"
+        ))
+}
+
+pub(super) fn endless_power(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0304, "`power` cannot be spread over an endless surface", span)
+        .at("over an infinite area")
+        .help("give `radiance: 1W/m2` in its place, or the shape an end")
+}
+
+pub(super) fn lens_of_which(lens: Span, camera: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0304, "a lens beside several cameras belongs to none of them", lens)
+        .at("whose lens?")
+        .label(camera, "a camera")
+        .help("put it into the camera: `camera { …, lens { … } }`")
+}
+
+pub(super) fn no_such_camera(wanted: &str, names: &[&str], place: Option<Span>) -> Diagnostic {
+    let diagnostic =
+        Diagnostic::new(Code::E0101, format!("no camera is called `{wanted}`"), place.unwrap_or_else(start));
+    match names {
+        [] => diagnostic.help("name one: `camera wide { … }`"),
+        names => diagnostic.help(format!("there is `--camera {}`", names.join("`, `--camera "))),
+    }
+}
+
+pub(super) fn which_camera(span: Span, first: Span, names: &[&str]) -> Diagnostic {
+    let name = names.first().copied().unwrap_or("wide");
+    Diagnostic::new(Code::E0302, "several cameras, and none is chosen", span)
+        .at("another camera")
+        .label(first, "a camera")
+        .help(format!("choose with `render {{ camera: {name} }}`, or with `--camera {name}`"))
+}
+
+pub(super) fn too_many_pixels(size: [u32; 2], span: Option<Span>) -> Diagnostic {
+    let message =
+        format!("{} × {} pixels are more than {} million", size[0], size[1], MAX_PIXELS / 1_000_000);
+    Diagnostic::new(Code::E0406, message, span.unwrap_or_else(start)).at("too large a picture")
+}
+
+pub(super) fn camera_inside(camera: Option<Span>, solid: Span) -> Diagnostic {
+    let place = camera.unwrap_or(solid);
+    Diagnostic::new(Code::W0601, "the camera is inside a solid, and sees only that", place)
+        .at("inside")
+        .label(solid, "this solid")
+        .help("move the camera out, or make the solid smaller")
+}
+
+pub(super) fn looks_at_itself(from: Span, look: Option<Span>) -> Diagnostic {
+    let diagnostic = Diagnostic::new(Code::E0404, "the camera looks at the point where it stands", from)
+        .at("stands here")
+        .help("move `from` away from `look`");
+    match look {
+        Some(look) => diagnostic.label(look, "looks here"),
+        None => diagnostic,
+    }
+}
+
+pub(super) fn up_along_view(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0404, "`up` points along the view, and so leaves the picture unturned", span)
+        .at("along the view, or of length 0")
+        .help("choose another direction, such as `(0, 0, -1)` for a view from above")
+}
+
+pub(super) fn no_middle(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0305, "this thing has no end, and so no middle", span)
+        .at("without bounds")
+        .help("name a thing with bounds, or give a point: `(0, 1, 0)m`")
+}
+
+pub(super) fn focus_behind(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0401, "the plane of focus lies behind the camera", span)
+        .at("not in front")
+        .help("focus on what the camera looks at")
+}
+
+pub(super) fn fov_and_focal(fov: Span, focal: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0304, "`fov` and `focal` both say how wide the view is", fov)
+        .at("one of the two")
+        .label(focal, "the other")
+        .help("keep one of them; `lens { aperture: 5mm }` blurs and leaves the view to `fov`")
+}

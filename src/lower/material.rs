@@ -1,0 +1,102 @@
+//! Materials: colours as reflectance, tint as absorption, roughness as α, power as radiance.
+
+use super::errors;
+use crate::diagnostic::Diagnostic;
+use crate::eval::{Given, Made, Things, Value};
+use crate::math::{DVec3, PI, ln};
+use crate::scene::{Material, MaterialId, Shape};
+use crate::schema::{dielectric, diffuse, emitter, metal, mirror, plastic};
+use std::collections::BTreeMap;
+
+/// The materials of a scene, each once.
+#[derive(Default)]
+pub(super) struct Materials {
+    all: Vec<Material>,
+    /// By canonical bytes.
+    known: BTreeMap<Vec<u8>, MaterialId>,
+}
+
+impl Materials {
+    pub(super) fn add(&mut self, material: Material) -> MaterialId {
+        let key = postcard::to_stdvec(&material).expect("a material is plain numbers");
+        *self.known.entry(key).or_insert_with(|| {
+            self.all.push(material);
+            MaterialId(self.all.len() as u32 - 1)
+        })
+    }
+
+    pub(super) fn get(&self, id: MaterialId) -> &Material {
+        &self.all[id.0 as usize]
+    }
+
+    pub(super) fn all(&self) -> impl Iterator<Item = &Material> {
+        self.all.iter()
+    }
+
+    pub(super) fn finish(self) -> Vec<Material> {
+        self.all
+    }
+}
+
+/// What a surface is made of that names no material.
+pub(super) fn bare(things: &Things) -> Material {
+    Material::Diffuse { color: things.read(&super::plain(diffuse::KIND), diffuse::COLOR) }
+}
+
+/// Lowers the material of a shape. A glowing one may count its power over the surface.
+pub(super) fn lower(things: &Things, given: &Given, shape: &Shape) -> Result<Material, Box<Diagnostic>> {
+    let Value::Made(made) = &given.value else { return Ok(bare(things)) };
+    let kind = made.kind;
+    Ok(if kind == diffuse::KIND {
+        Material::Diffuse { color: things.read(made, diffuse::COLOR) }
+    } else if kind == mirror::KIND {
+        Material::Mirror { color: things.read(made, mirror::COLOR) }
+    } else if kind == dielectric::KIND {
+        let tint = things.read(made, dielectric::TINT);
+        let depth = things.read(made, dielectric::DEPTH);
+        let absorption = |channel: f64| if channel >= 1.0 { 0.0 } else { -ln(channel) / depth };
+        Material::Dielectric {
+            ior: things.read(made, dielectric::IOR),
+            absorption: DVec3::new(absorption(tint.x), absorption(tint.y), absorption(tint.z)),
+            alpha: alpha(things.read(made, dielectric::ROUGHNESS)),
+        }
+    } else if kind == metal::KIND {
+        Material::Metal {
+            color: things.read(made, metal::COLOR),
+            alpha: alpha(things.read(made, metal::ROUGHNESS)),
+        }
+    } else if kind == plastic::KIND {
+        Material::Plastic {
+            color: things.read(made, plastic::COLOR),
+            ior: things.read(made, plastic::IOR),
+            alpha: alpha(things.read(made, plastic::ROUGHNESS)),
+        }
+    } else {
+        glow(things, made, given, shape)?
+    })
+}
+
+fn glow(things: &Things, made: &Made, given: &Given, shape: &Shape) -> Result<Material, Box<Diagnostic>> {
+    let color = things.read(made, emitter::COLOR);
+    let radiance = match (made.given(emitter::POWER), made.given(emitter::RADIANCE)) {
+        (Some((power, span)), _) => {
+            let sides = if shape.is_closed() { 1.0 } else { 2.0 };
+            let area = shape.area();
+            if area == f64::INFINITY {
+                return Err(Box::new(errors::endless_power(span)));
+            }
+            color * (power / (PI * area * sides))
+        }
+        (None, Some((radiance, _))) => color * radiance,
+        (None, None) => DVec3::ZERO,
+    };
+    match radiance.is_finite() {
+        true => Ok(Material::Emitter { radiance }),
+        false => Err(Box::new(errors::glows_beyond(given.span))),
+    }
+}
+
+/// Perceptual roughness to GGX α.
+fn alpha(roughness: f64) -> f64 {
+    roughness * roughness
+}

@@ -1,0 +1,393 @@
+//! Things to scene: materials and shapes in world space, power as radiance, one camera; and the defaults that
+//! make `sphere { radius: 1m }` a picture.
+
+mod camera;
+mod errors;
+mod material;
+mod shape;
+
+use crate::color::Rgb;
+use crate::diagnostic::Diagnostic;
+use crate::eval::{Thing, ThingId, Things};
+use crate::math::DVec3;
+use crate::scene::shape::Bounds;
+use crate::scene::{Develop, Light, Material, OriginId, Primitive, Scene, Shape, Target, Trace};
+use crate::schema::{Category, light, render, sky, sun};
+use material::Materials;
+
+/// The most pixels a picture may have.
+pub const MAX_PIXELS: u64 = 100_000_000;
+
+/// Samples a pixel where the file does not say.
+const DEFAULT_SAMPLES: u32 = 64;
+
+/// Settings from outside that stand in place of the file's.
+#[derive(Clone, Debug, Default)]
+pub struct Overrides {
+    /// The name of the camera that takes the picture.
+    pub camera: Option<String>,
+    /// Width and height in pixels.
+    pub size: Option<[u32; 2]>,
+    /// Samples a pixel, in place of the file's samples or noise.
+    pub samples: Option<u32>,
+    /// Chooses the random numbers.
+    pub seed: Option<u64>,
+}
+
+/// What lowering found.
+#[derive(Debug, Default)]
+pub struct Lowered {
+    /// The scene, where nothing is wrong.
+    pub scene: Option<Scene>,
+    /// One line for each default that was chosen for the user.
+    pub notes: Vec<String>,
+    /// What is wrong.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Lowers the things of a picture. Things with errors, which were reported, are left out.
+pub fn lower(things: &Things, overrides: &Overrides) -> Lowered {
+    let mut lowering = Lowering {
+        things,
+        overrides,
+        primitives: vec![],
+        materials: Materials::default(),
+        lights: vec![],
+        extents: vec![Extent::Nowhere; things.things.len()],
+        bare: 0,
+        out: Lowered::default(),
+    };
+    lowering.surfaces_and_lights();
+    let blocks = lowering.blocks();
+    let size = lowering.size(&blocks);
+    let camera = lowering.camera(&blocks, size);
+    lowering.say_defaults();
+    if let (Some(camera), Some(size)) = (camera, size) {
+        let (trace, tonemap) = lowering.trace(&blocks, size);
+        lowering.warn_inside(camera.0.position, blocks.camera);
+        lowering.out.scene = Some(Scene {
+            primitives: lowering.primitives,
+            materials: lowering.materials.finish(),
+            lights: lowering.lights,
+            camera: camera.0,
+            trace,
+            develop: Develop { exposure: camera.1, tonemap },
+        });
+    }
+    lowering.out
+}
+
+struct Lowering<'a> {
+    things: &'a Things,
+    overrides: &'a Overrides,
+    primitives: Vec<Primitive>,
+    materials: Materials,
+    lights: Vec<Light>,
+    /// By thing.
+    extents: Vec<Extent>,
+    /// How many shapes name no material.
+    bare: usize,
+    out: Lowered,
+}
+
+/// Where a thing is.
+#[derive(Clone, Copy, Debug)]
+enum Extent {
+    /// Is in no place: a block, a sky.
+    Nowhere,
+    /// Has no end.
+    Endless,
+    /// Lies in a box, and is to be seen.
+    Box(Bounds),
+    /// A lamp: has a place, but a camera that frames the picture need not show it.
+    Lamp(Bounds),
+}
+
+/// The blocks that say how the picture is taken.
+#[derive(Default)]
+struct Blocks<'a> {
+    camera: Option<&'a Thing>,
+    lens: Option<&'a Thing>,
+    render: Option<&'a Thing>,
+}
+
+impl<'a> Lowering<'a> {
+    fn report(&mut self, diagnostic: Diagnostic) {
+        self.out.diagnostics.push(diagnostic);
+    }
+
+    fn surfaces_and_lights(&mut self) {
+        let mut sky_place = None;
+        for (index, thing) in self.things.things.iter().enumerate() {
+            let sound =
+                thing.made.is_sound() && thing.material.as_ref().is_none_or(|given| given.value.is_sound());
+            if !sound {
+                continue;
+            }
+            let kind = thing.made.kind;
+            if kind.get().category == Category::Shape {
+                self.surface(index, thing);
+            } else if kind == light::KIND {
+                self.lamp(index, thing);
+            } else if kind == sun::KIND {
+                self.sun(thing);
+            } else if kind == sky::KIND {
+                if let Some(first) = sky_place {
+                    self.report(errors::second("sky", thing.made.span, first));
+                    continue;
+                }
+                sky_place = Some(thing.made.span);
+                let color = self.things.read(&thing.made, sky::COLOR);
+                let radiance = self.things.read(&thing.made, sky::RADIANCE);
+                self.add_light(thing, Light::Sky { radiance: color * radiance });
+            }
+        }
+    }
+
+    fn surface(&mut self, index: usize, thing: &Thing) {
+        let shape = match shape::lower(self.things, thing) {
+            Ok(shape) => shape,
+            Err(diagnostic) => return self.report(self.used_at(thing, *diagnostic)),
+        };
+        let extent = shape.bounds().map_or(Extent::Endless, Extent::Box);
+        self.extents[index] = extent;
+        let material = match &thing.material {
+            Some(given) => match material::lower(self.things, given, &shape) {
+                Ok(material) => material,
+                Err(diagnostic) => return self.report(self.used_at(thing, *diagnostic)),
+            },
+            None => {
+                self.bare += 1;
+                material::bare(self.things)
+            }
+        };
+        self.add_surface(shape, material, thing.origin);
+    }
+
+    fn add_surface(&mut self, shape: Shape, material: Material, origin: OriginId) {
+        let material = self.materials.add(material);
+        self.primitives.push(Primitive { shape, material, origin });
+    }
+
+    /// A lamp: a point, or a glowing sphere.
+    fn lamp(&mut self, index: usize, thing: &Thing) {
+        let made = &thing.made;
+        let power = self.things.read(made, light::COLOR) * self.things.read(made, light::POWER);
+        let radius = self.things.read(made, light::RADIUS);
+        let at = self.things.read(made, light::AT);
+        let position = thing.world_from_object.transform_point3(at);
+        if !position.is_finite() {
+            return self.report(self.used_at(thing, errors::not_finite_place(made.span)));
+        }
+        self.extents[index] = Extent::Lamp(Bounds { min: position, max: position });
+        if radius == 0.0 {
+            let intensity = power / (4.0 * crate::math::PI);
+            return self.add_light(thing, Light::Point { position, intensity });
+        }
+        let placement = thing.world_from_object * crate::math::DAffine3::from_translation(at);
+        match shape::ball(placement, radius, made.span) {
+            Ok(shape) => {
+                if let Some(bounds) = shape.bounds() {
+                    self.extents[index] = Extent::Lamp(bounds);
+                }
+                let radiance = power / (crate::math::PI * shape.area());
+                if !radiance.is_finite() {
+                    return self.report(self.used_at(thing, errors::glows_beyond(made.span)));
+                }
+                self.add_surface(shape, Material::Emitter { radiance }, thing.origin);
+            }
+            Err(diagnostic) => self.report(self.used_at(thing, *diagnostic)),
+        }
+    }
+
+    fn sun(&mut self, thing: &Thing) {
+        let from = self.things.read(&thing.made, sun::FROM);
+        let Some(direction) = shape::unit(thing.world_from_object.matrix3 * from) else {
+            let span = thing.made.given(sun::FROM).map_or(thing.made.span, |(_, span)| span);
+            return self.report(self.used_at(thing, errors::no_direction("from", span)));
+        };
+        let color = self.things.read(&thing.made, sun::COLOR);
+        let irradiance = color * self.things.read(&thing.made, sun::IRRADIANCE);
+        let radius = 0.5 * self.things.read(&thing.made, sun::ANGLE);
+        self.add_light(thing, Light::Sun { direction, irradiance, radius });
+    }
+
+    fn add_light(&mut self, thing: &Thing, light: Light) {
+        let finite = match light {
+            Light::Point { intensity, .. } => intensity.is_finite(),
+            Light::Sun { irradiance, .. } => irradiance.is_finite(),
+            Light::Sky { radiance } => radiance.is_finite(),
+        };
+        match finite {
+            true => self.lights.push(light),
+            false => self.report(self.used_at(thing, errors::glows_beyond(thing.made.span))),
+        }
+    }
+
+    /// Finds the one camera, lens and render block.
+    fn blocks(&mut self) -> Blocks<'a> {
+        let all: &'a [Thing] = &self.things.things;
+        let of = |kind| all.iter().filter(move |thing| thing.made.kind == kind && thing.made.is_sound());
+        let mut blocks = Blocks::default();
+        for (kind, place) in
+            [(render::KIND, &mut blocks.render), (crate::schema::lens::KIND, &mut blocks.lens)]
+        {
+            for thing in of(kind) {
+                match place {
+                    Some(first) => {
+                        let diagnostic = errors::second(kind.get().name, thing.made.span, first.made.span);
+                        self.out.diagnostics.push(diagnostic);
+                    }
+                    None => *place = Some(thing),
+                }
+            }
+        }
+        let cameras: Vec<(usize, &Thing)> = all
+            .iter()
+            .enumerate()
+            .filter(|(_, thing)| thing.made.kind == crate::schema::camera::KIND)
+            .collect();
+        blocks.camera = self.choose_camera(&cameras, blocks.render);
+        if let (Some(lens), [first, _, ..]) = (blocks.lens, &cameras[..]) {
+            self.report(errors::lens_of_which(lens.made.span, first.1.made.span));
+        }
+        blocks
+    }
+
+    fn choose_camera(&mut self, cameras: &[(usize, &'a Thing)], render: Option<&Thing>) -> Option<&'a Thing> {
+        let names: Vec<&str> = cameras.iter().filter_map(|(_, camera)| camera.name.as_deref()).collect();
+        if let Some(wanted) = &self.overrides.camera {
+            let found = cameras.iter().find(|(_, camera)| camera.name.as_deref() == Some(wanted));
+            if found.is_none() {
+                let place = cameras.first().map(|(_, camera)| camera.made.span);
+                self.report(errors::no_such_camera(wanted, &names, place));
+            }
+            return found.map(|(_, camera)| *camera);
+        }
+        if let Some((id, _)) = render.and_then(|render| render.made.given(render::CAMERA)) {
+            let place = self.places(id)?;
+            return cameras.iter().find(|(index, _)| place.contains(index)).map(|(_, camera)| *camera);
+        }
+        if let [_, (_, second), ..] = cameras {
+            self.report(errors::which_camera(second.made.span, cameras[0].1.made.span, &names));
+        }
+        cameras.first().map(|(_, camera)| *camera)
+    }
+
+    fn places(&self, id: ThingId) -> Option<std::ops::Range<usize>> {
+        self.things.places.get(&id).cloned()
+    }
+
+    /// Width and height in pixels; none where there are too many.
+    fn size(&mut self, blocks: &Blocks) -> Option<[u32; 2]> {
+        let given = blocks.render.and_then(|thing| thing.made.given(render::SIZE));
+        let size = match (self.overrides.size, &given) {
+            (Some(size), _) => size,
+            (None, Some((size, _))) => *size,
+            (None, None) => default_size(self.things),
+        };
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        if pixels > MAX_PIXELS {
+            let span = given.map(|(_, span)| span);
+            self.report(errors::too_many_pixels(size, span));
+            return None;
+        }
+        Some(size)
+    }
+
+    fn trace(&mut self, blocks: &Blocks, size: [u32; 2]) -> (Trace, crate::scene::Tonemap) {
+        let made = blocks.render.map(|thing| thing.made.clone()).unwrap_or_else(|| plain(render::KIND));
+        let samples = made.given(render::SAMPLES).map(|(samples, _)| samples as u32);
+        let noise = made.given(render::NOISE).map(|(noise, _)| noise);
+        let target = match (self.overrides.samples.or(samples), noise) {
+            (Some(samples), _) => Target::Samples(samples),
+            (None, Some(noise)) => Target::Noise(noise),
+            (None, None) => {
+                self.out.notes.push(format!(
+                    "no samples or noise: {DEFAULT_SAMPLES} samples a pixel, as `render {{ samples: {DEFAULT_SAMPLES} }}`"
+                ));
+                Target::Samples(DEFAULT_SAMPLES)
+            }
+        };
+        let trace = Trace {
+            size,
+            target,
+            bounces: self.things.read(&made, render::BOUNCES) as u32,
+            indirect: self.things.read(&made, render::INDIRECT),
+            seed: self.overrides.seed.unwrap_or(self.things.read(&made, render::SEED) as u64),
+            filter: self.things.read(&made, render::FILTER),
+        };
+        (trace, self.things.read(&made, render::TONEMAP))
+    }
+
+    /// Says what was chosen for the user, and chooses light where there is none.
+    fn say_defaults(&mut self) {
+        if self.bare > 0 {
+            let which =
+                if self.bare == 1 { "one shape names".into() } else { format!("{} shapes name", self.bare) };
+            let color = crate::schema::DEFAULT_COLOR;
+            self.out.notes.push(format!("{which} no material: light grey `diffuse {{ color: {color} }}`"));
+        }
+        let glows = self.materials.all().any(|material| matches!(material, Material::Emitter { .. }));
+        if self.lights.is_empty() && !glows {
+            let lights = self
+                .things
+                .things
+                .iter()
+                .any(|thing| thing.made.kind.get().category == Category::Light || !thing.made.is_sound());
+            if !lights {
+                self.lights.push(Light::Sky { radiance: Rgb::ONE });
+                self.out.notes.push("no light: a soft white sky, as `sky {}`".into());
+            }
+        }
+    }
+
+    /// Warns of a camera that sees nothing but the inside of a solid.
+    fn warn_inside(&mut self, position: DVec3, camera: Option<&Thing>) {
+        let inside = self.primitives.iter().find(|primitive| {
+            let opaque = !matches!(self.materials.get(primitive.material), Material::Dielectric { .. });
+            opaque && primitive.shape.contains(position)
+        });
+        if let Some(primitive) = inside {
+            let chain = self.things.origins.chain(primitive.origin);
+            let place = camera.map(|camera| {
+                camera.made.given(crate::schema::camera::FROM).map_or(camera.made.span, |(_, span)| span)
+            });
+            if let Some(&solid) = chain.last() {
+                self.report(errors::camera_inside(place, solid));
+            }
+        }
+    }
+
+    /// Adds the chain of uses that led to a thing, but for those whose text holds the place anyway.
+    fn used_at(&self, thing: &Thing, mut diagnostic: Diagnostic) -> Diagnostic {
+        let chain = self.things.origins.chain(thing.origin);
+        diagnostic.uses =
+            chain.into_iter().filter(|place| !place.contains(diagnostic.primary.span)).collect();
+        diagnostic
+    }
+}
+
+/// A thing of a kind as if it had been written with nothing in it.
+fn plain(kind: crate::schema::KindId) -> std::rc::Rc<crate::eval::Made> {
+    let nowhere = crate::span::Span::new(crate::span::SourceId(0), 0, 0);
+    std::rc::Rc::new(crate::eval::Made::new(kind, nowhere))
+}
+
+fn default_size(things: &Things) -> [u32; 2] {
+    things.read(&plain(render::KIND), render::SIZE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schema::{Preset, sphere};
+
+    #[test]
+    fn blocks_can_stand_with_nothing_in_them() {
+        for kind in [render::KIND, crate::schema::camera::KIND] {
+            assert!(kind.fields().all(|field| field.default != Preset::Required), "{}", kind.get().name);
+        }
+        assert!(sphere::KIND.fields().any(|field| field.default == Preset::Required));
+    }
+}

@@ -1,0 +1,97 @@
+//! Shapes in world space.
+
+use super::errors;
+use crate::diagnostic::Diagnostic;
+use crate::eval::{Thing, Things};
+use crate::math::{DAffine3, DVec3};
+use crate::scene::Shape;
+use crate::scene::shape::{Form, Quadric};
+use crate::schema::{hyperboloid, plane, sphere};
+use crate::span::Span;
+
+/// A map stretches by no more than this beyond another direction and still counts as a similarity: rounding of
+/// rotations, far below what a picture can show.
+const SIMILAR: f64 = 1e-12;
+
+/// Lowers a shape.
+pub(super) fn lower(things: &Things, thing: &Thing) -> Result<Shape, Box<Diagnostic>> {
+    let made = &thing.made;
+    let placement = thing.world_from_object;
+    if !placement.is_finite() {
+        return Err(Box::new(errors::not_finite_place(made.span)));
+    }
+    if made.kind == sphere::KIND {
+        ball(placement, things.read(made, sphere::RADIUS), made.span)
+    } else if made.kind == hyperboloid::KIND {
+        hyperboloid(things, thing)
+    } else {
+        let normal = things.read(made, plane::NORMAL);
+        let span = made.given(plane::NORMAL).map_or(made.span, |(_, span)| span);
+        let Some(normal) = unit(normal) else { return Err(Box::new(errors::no_direction("normal", span))) };
+        let inverse = invert(placement).ok_or_else(|| Box::new(errors::flattened(made.span)))?;
+        let normal = unit(inverse.matrix3.transpose() * normal);
+        let normal = normal.ok_or_else(|| Box::new(errors::flattened(made.span)))?;
+        Ok(Shape::Plane { point: placement.translation, normal })
+    }
+}
+
+/// A ball about the origin of a placement: a sphere, or an ellipsoid where the placement stretches.
+pub(super) fn ball(placement: DAffine3, radius: f64, span: Span) -> Result<Shape, Box<Diagnostic>> {
+    let m = placement.matrix3;
+    let squares = DVec3::new(m.x_axis.length_squared(), m.y_axis.length_squared(), m.z_axis.length_squared());
+    let size = squares.max_element();
+    let skew =
+        m.x_axis.dot(m.y_axis).abs().max(m.y_axis.dot(m.z_axis).abs()).max(m.z_axis.dot(m.x_axis).abs());
+    let similar = size - squares.min_element() <= SIMILAR * size && skew <= SIMILAR * size;
+    if similar && size > 0.0 && size.is_finite() {
+        let radius = radius * size.sqrt();
+        let sound = (radius * radius).is_normal();
+        let shape = Shape::Sphere { center: placement.translation, radius };
+        return if sound { Ok(shape) } else { Err(Box::new(errors::flattened(span))) };
+    }
+    let stretch = DVec3::splat(radius);
+    quadric(Form::Ellipsoid, placement, stretch, [f64::NEG_INFINITY, f64::INFINITY], false, span)
+}
+
+fn hyperboloid(things: &Things, thing: &Thing) -> Result<Shape, Box<Diagnostic>> {
+    let made = &thing.made;
+    let axes = things.read(made, hyperboloid::AXES);
+    let form = if things.read(made, hyperboloid::SHEETS) == 1.0 { Form::OneSheet } else { Form::TwoSheet };
+    let height = made.given(hyperboloid::HEIGHT);
+    let (end, capped) = match height {
+        Some((height, _)) => (0.5 * height / axes.y, !things.read(made, hyperboloid::OPEN)),
+        None => (f64::INFINITY, false),
+    };
+    if let (Form::TwoSheet, Some((_, span))) = (form, height)
+        && end <= 1.0
+    {
+        return Err(Box::new(errors::height_between_sheets(2.0 * axes.y, span)));
+    }
+    quadric(form, thing.world_from_object, axes, [-end, end], capped, made.span)
+}
+
+fn quadric(
+    form: Form,
+    placement: DAffine3,
+    axes: DVec3,
+    [low, high]: [f64; 2],
+    capped: bool,
+    span: Span,
+) -> Result<Shape, Box<Diagnostic>> {
+    let world_from_object = placement * DAffine3::from_scale(axes);
+    let object_from_world = invert(world_from_object).ok_or_else(|| Box::new(errors::flattened(span)))?;
+    Ok(Shape::Quadric(Quadric { form, world_from_object, object_from_world, low, high, capped }))
+}
+
+/// The inverse of a map that keeps three dimensions.
+fn invert(map: DAffine3) -> Option<DAffine3> {
+    let inverse = map.inverse();
+    let sound = map.is_finite() && map.matrix3.determinant().is_normal() && inverse.is_finite();
+    sound.then_some(inverse)
+}
+
+/// The vector of length 1 in the same direction, if there is one.
+pub(super) fn unit(v: DVec3) -> Option<DVec3> {
+    let scaled = v / v.abs().max_element();
+    scaled.is_finite().then(|| scaled / scaled.length())
+}
