@@ -32,3 +32,5 @@ pub mod schema;
 pub mod develop;
 pub mod syntax;
 pub mod scene;
+pub mod output;
+pub mod report;
