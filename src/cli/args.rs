@@ -101,15 +101,15 @@ pub struct Build {
 
     /// Traces this many paths a pixel, in place of the scene's `samples` or `noise`. Twice as many take twice
     /// as long and leave 0.7 of the noise.
-    #[arg(long, value_name = "N", value_parser = samples)]
+    #[arg(long, value_name = "N", value_parser = samples, allow_negative_numbers = true)]
     pub samples: Option<u32>,
 
     /// Chooses the random numbers, in place of the scene's `seed`. The same seed gives the same picture.
-    #[arg(long, value_name = "N", value_parser = seed)]
+    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
     pub seed: Option<u64>,
 
     /// Traces on this many threads. By default on all cores. The picture is the same for any number.
-    #[arg(short = 'j', long = "threads", value_name = "N", value_parser = threads)]
+    #[arg(short = 'j', long = "threads", value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
 
     /// Takes the picture with the camera of this name, in place of the one that `render` names.
@@ -288,7 +288,9 @@ mod tests {
             assert!(size(wrong).is_err(), "{wrong}");
         }
         assert_eq!(crop("0,0,320,240"), Ok([0, 0, 320, 240]));
-        for wrong in ["", "0,0,320", "0,0,320,240,1", "0,0,0,240", "0,0,5,0", "-1,0,5,5", "0,0,5,5,", "a,0,5,5"] {
+        for wrong in
+            ["", "0,0,320", "0,0,320,240,1", "0,0,0,240", "0,0,5,0", "-1,0,5,5", "0,0,5,5,", "a,0,5,5"]
+        {
             assert!(crop(wrong).is_err(), "{wrong}");
         }
         assert_eq!(samples("64"), Ok(64));

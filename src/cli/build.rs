@@ -77,7 +77,8 @@ fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
 
 /// The places that `-o` names.
 pub fn targets(outputs: &[PathBuf]) -> Result<Vec<Target>, Problem> {
-    let targets: Vec<Target> = outputs.iter().map(|path| Target::from_argument(path)).collect::<Result<_, _>>()?;
+    let targets: Vec<Target> =
+        outputs.iter().map(|path| Target::from_argument(path)).collect::<Result<_, _>>()?;
     let paths: Vec<PathBuf> = targets.iter().map(|target| target.path.clone()).collect();
     match first_repeated(&paths) {
         Some(twice) => Err(Problem::new(format!("the output `{}` is given twice", twice.display()))),
@@ -87,10 +88,13 @@ pub fn targets(outputs: &[PathBuf]) -> Result<Vec<Target>, Problem> {
 
 /// Nobody means to replace a scene by its picture.
 pub fn refuse_inputs_as_outputs(inputs: &[PathBuf], targets: &[Target]) -> Result<(), Problem> {
-    let inputs: Vec<PathBuf> = inputs.iter().filter(|path| !is_standard(path)).map(|path| same(path)).collect();
+    // Folders are refused when they are read.
+    let files = inputs.iter().filter(|path| !is_standard(path) && !path.is_dir());
+    let inputs: Vec<PathBuf> = files.map(|path| same(path)).collect();
     match targets.iter().find(|target| !is_standard(&target.path) && inputs.contains(&same(&target.path))) {
         Some(target) => {
-            let problem = Problem::new(format!("`{}` would be replaced by its picture", target.path.display()));
+            let problem =
+                Problem::new(format!("`{}` would be replaced by its picture", target.path.display()));
             Err(problem.help("name another output with `-o`"))
         }
         None => Ok(()),
@@ -195,12 +199,15 @@ fn window(scene: &Scene, crop: Option<[u32; 4]>) -> Result<Window, Problem> {
     let ends = |start: u32, length: u32, most: u32| start.checked_add(length).is_some_and(|end| end <= most);
     if !ends(window.x, window.width, whole.width) || !ends(window.y, window.height, whole.height) {
         let [width, height] = scene.trace.size;
-        let problem = Problem::new(format!("the crop does not lie within the picture, which is {width}×{height}"));
+        let problem =
+            Problem::new(format!("the crop does not lie within the picture, which is {width}×{height}"));
         let help = "`--crop X,Y,W,H`: X + W is at most the width, Y + H the height";
         return Err(problem.help(help));
     }
     match too_many_pixels([window.width, window.height]) {
-        Some(why) => Err(Problem::new(why).help("make it smaller with `--size`, or trace parts of it with `--crop`")),
+        Some(why) => {
+            Err(Problem::new(why).help("make it smaller with `--size`, or trace parts of it with `--crop`"))
+        }
         None => Ok(window),
     }
 }

@@ -1,6 +1,6 @@
 //! Scene files and standard input to sources.
 
-use super::Problem;
+use super::{Problem, plain};
 use rt_lang::diagnostic::{Code, Diagnostic};
 use rt_lang::source::{Source, Sources};
 use rt_lang::span::{SourceId, Span};
@@ -37,7 +37,7 @@ pub fn read(path: &Path) -> Result<Input, Problem> {
         }
         (path.display().to_string(), File::open(path).and_then(|file| limited(file, LARGEST)))
     };
-    let bytes = bytes.map_err(|error| Problem::new(format!("cannot read `{name}`: {error}")))?;
+    let bytes = bytes.map_err(|error| Problem::new(format!("cannot read `{name}`: {}", plain(&error))))?;
     Ok(take(name, bytes))
 }
 
@@ -48,7 +48,7 @@ pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, Problem> {
     } else {
         File::open(path).and_then(|file| limited(file, most))
     };
-    let problem = |error| Problem::new(format!("cannot read `{}`: {error}", path.display()));
+    let problem = |error| Problem::new(format!("cannot read `{}`: {}", path.display(), plain(&error)));
     let bytes = bytes.map_err(problem)?;
     if bytes.len() as u64 > most {
         return Err(Problem::new(format!("`{}` is larger than {} MiB", path.display(), most >> 20)));
@@ -90,9 +90,13 @@ mod errors {
 
     pub fn not_utf8(id: SourceId, at: usize, byte: u8) -> Diagnostic {
         let replacement = char::REPLACEMENT_CHARACTER.len_utf8();
-        Diagnostic::new(Code::E0009, "a scene is UTF-8 text, this is not", Span::new(id, at, at + replacement))
-            .at(format!("byte 0x{byte:02X}, the {} of the file", ordinal(at + 1)))
-            .help("save the file as UTF-8")
+        Diagnostic::new(
+            Code::E0009,
+            "a scene is UTF-8 text, this is not",
+            Span::new(id, at, at + replacement),
+        )
+        .at(format!("byte 0x{byte:02X}, the {} of the file", ordinal(at + 1)))
+        .help("save the file as UTF-8")
     }
 
     pub fn too_large(id: SourceId) -> Diagnostic {

@@ -57,6 +57,13 @@ impl Problem {
     }
 }
 
+/// What went wrong with a file, as a person says it: without error numbers, and without the name of a temporary
+/// file.
+fn plain(error: &std::io::Error) -> String {
+    let text = if error.raw_os_error().is_some() { error.to_string() } else { error.kind().to_string() };
+    text.split(" (os error").next().unwrap_or_default().to_lowercase()
+}
+
 /// Runs the command that the arguments name.
 pub fn main() -> ExitCode {
     std::panic::set_hook(Box::new(report_panic));

@@ -1,9 +1,9 @@
 //! Where pictures go. A file is written beside its place and moved there when it is whole; until then
 //! whatever was there before stays.
 
-use super::Problem;
 use super::input::is_standard;
 use super::interrupt::Interrupt;
+use super::{Problem, plain};
 use rt_lang::output::Format;
 use std::fs::{self, Permissions};
 use std::io::{self, IsTerminal, Write, stdout};
@@ -26,15 +26,19 @@ impl Target {
             return Ok(Target { path: path.into(), format: Format::Png });
         }
         if let Some(name) = path.to_str().and_then(|text| text.strip_suffix(":-")) {
-            let format = Format::from_extension(name).ok_or_else(|| unknown_format(path))?;
+            let format = Format::from_extension(name).ok_or_else(|| unknown_format(name))?;
             return Ok(Target { path: "-".into(), format });
         }
         if path.is_dir() {
             let problem = Problem::new(format!("the output `{}` is a folder", path.display()));
             return Err(problem.help("name a file in it, such as `picture.png`"));
         }
-        let extension = path.extension().and_then(|extension| extension.to_str());
-        let format = extension.and_then(Format::from_extension).ok_or_else(|| unknown_format(path))?;
+        let extension = path.extension().ok_or_else(|| {
+            let problem = Problem::new(format!("the output `{}` does not say its format", path.display()));
+            problem.help(known_formats())
+        })?;
+        let extension = extension.to_string_lossy();
+        let format = Format::from_extension(&extension).ok_or_else(|| unknown_format(&extension))?;
         Ok(Target { path: path.into(), format })
     }
 
@@ -52,7 +56,8 @@ impl Target {
             }
             return Ok(Staged { target: self.clone(), file: None, interrupt: interrupt.clone() });
         }
-        let cannot = |reason: String| Problem::new(format!("cannot write `{}`: {reason}", self.path.display()));
+        let cannot =
+            |reason: String| Problem::new(format!("cannot write `{}`: {reason}", self.path.display()));
         let existing = fs::metadata(&self.path).ok();
         if existing.as_ref().is_some_and(|existing| !existing.is_file()) {
             return Err(cannot("there is something that is not a file".into()));
@@ -85,18 +90,13 @@ fn temporary(existing: Option<Permissions>) -> tempfile::Builder<'static, 'stati
     builder
 }
 
-fn unknown_format(path: &Path) -> Problem {
-    let known = Format::extensions().collect::<Vec<_>>().join(", ");
-    let message = match path.extension() {
-        Some(extension) => format!("`.{}` is no format of pictures", extension.display()),
-        None => format!("the output `{}` does not say its format", path.display()),
-    };
-    Problem::new(message).help(format!("the formats are {known}; standard output is `-` (PNG) or `exr:-`"))
+fn unknown_format(name: &str) -> Problem {
+    Problem::new(format!("`{name}` is no format of pictures")).help(known_formats())
 }
 
-/// What went wrong, without the name of the temporary file that some errors carry.
-fn plain(error: &io::Error) -> String {
-    if error.raw_os_error().is_some() { error.to_string() } else { error.kind().to_string() }
+fn known_formats() -> String {
+    let known = Format::extensions().collect::<Vec<_>>().join(", ");
+    format!("the formats are {known}; standard output is `-` (PNG) or `exr:-`")
 }
 
 /// A place that has been made sure of. Dropped, it leaves no trace.

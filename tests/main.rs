@@ -1,0 +1,4 @@
+//! The one binary of integration tests: what is seen from outside.
+
+#[cfg(test)]
+mod command;
