@@ -112,7 +112,10 @@ impl Staged {
     /// Writes all bytes and waits until they are on the disk.
     pub fn write(&mut self, bytes: &[u8]) -> Result<(), Problem> {
         let written = match &mut self.file {
-            Some((file, _)) => file.write_all(bytes).and_then(|()| file.as_file().sync_all()),
+            Some((file, _)) => {
+                let file = file.as_file_mut();
+                file.write_all(bytes).and_then(|()| file.sync_all())
+            }
             None => {
                 let mut stdout = stdout().lock();
                 stdout.write_all(bytes).and_then(|()| stdout.flush())
