@@ -29,6 +29,8 @@ pub mod diagnostic;
 pub mod eval;
 pub mod lower;
 pub mod math;
+pub mod output;
+pub mod report;
 pub mod scene;
 pub mod schema;
 pub mod source;

@@ -28,6 +28,15 @@ impl Source {
         let column = self.text.get(start..byte).map_or(byte - start, |before| before.chars().count());
         (line + 1, column + 1)
     }
+
+    /// The bytes of the line that holds a byte, without the line's end.
+    pub fn line_range(&self, byte: usize) -> std::ops::Range<usize> {
+        let line = self.line_starts.partition_point(|&start| start as usize <= byte) - 1;
+        let start = self.line_starts[line] as usize;
+        let end = self.line_starts.get(line + 1).map_or(self.text.len(), |&next| next as usize - 1);
+        let text = &self.text[start..end];
+        start..start + text.strip_suffix('\r').unwrap_or(text).len()
+    }
 }
 
 /// The source texts of one compilation.

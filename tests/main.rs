@@ -1,4 +1,11 @@
-//! The one test binary.
+//! The one binary of integration tests: what is seen from outside.
 
+#![allow(clippy::unwrap_used)]
+
+mod architecture;
+mod command;
+mod diagnostics;
+mod documents;
 mod dump;
 mod parse;
+mod pictures;

@@ -11,7 +11,7 @@ use crate::diagnostic::Diagnostic;
 use crate::eval::{Thing, ThingId, Things};
 use crate::math::DVec3;
 use crate::scene::shape::Bounds;
-use crate::scene::{Develop, Light, Material, OriginId, Primitive, Scene, Shape, Target, Trace};
+use crate::scene::{Develop, Light, Material, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace};
 use crate::schema::{Category, light, render, sky, sun};
 use material::Materials;
 
@@ -32,6 +32,10 @@ pub struct Overrides {
     pub samples: Option<u32>,
     /// Chooses the random numbers.
     pub seed: Option<u64>,
+    /// In stops; an inner none is `auto`.
+    pub exposure: Option<Option<f64>>,
+    /// The curve from scene to display.
+    pub tonemap: Option<Tonemap>,
 }
 
 /// What lowering found.
@@ -71,7 +75,7 @@ pub fn lower(things: &Things, overrides: &Overrides) -> Lowered {
             lights: lowering.lights,
             camera: camera.0,
             trace,
-            develop: Develop { exposure: camera.1, tonemap },
+            develop: Develop { exposure: overrides.exposure.unwrap_or(camera.1), tonemap },
         });
     }
     lowering.out
@@ -295,7 +299,7 @@ impl<'a> Lowering<'a> {
         Some(size)
     }
 
-    fn trace(&mut self, blocks: &Blocks, size: [u32; 2]) -> (Trace, crate::scene::Tonemap) {
+    fn trace(&mut self, blocks: &Blocks, size: [u32; 2]) -> (Trace, Tonemap) {
         let made = blocks.render.map(|thing| thing.made.clone()).unwrap_or_else(|| plain(render::KIND));
         let samples = made.given(render::SAMPLES).map(|(samples, _)| samples as u32);
         let noise = made.given(render::NOISE).map(|(noise, _)| noise);
@@ -317,7 +321,8 @@ impl<'a> Lowering<'a> {
             seed: self.overrides.seed.unwrap_or(self.things.read(&made, render::SEED) as u64),
             filter: self.things.read(&made, render::FILTER),
         };
-        (trace, self.things.read(&made, render::TONEMAP))
+        let tonemap = self.overrides.tonemap.unwrap_or_else(|| self.things.read(&made, render::TONEMAP));
+        (trace, tonemap)
     }
 
     /// Says what was chosen for the user, and chooses light where there is none.

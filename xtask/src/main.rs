@@ -1,1 +1,123 @@
-fn main() {}
+//! What needs more than Rust: `cargo xtask e2e` runs the command on a real terminal, on a full disk, within
+//! little memory, and as the README says.
+//!
+//! Nothing is skipped quietly. A tool that is missing fails the step that needs it, with its name.
+
+mod readme;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+use std::time::Instant;
+
+/// What a step ends with: nothing, or why it failed.
+type Outcome = Result<(), String>;
+
+/// The steps of `e2e` with what each shows.
+const STEPS: &[(&str, fn(&Place) -> Outcome)] = &[
+    ("terminal", terminal),
+    ("full-disk", full_disk),
+    ("memory", memory),
+    ("licences", licences),
+    ("readme", readme::commands),
+];
+
+const USAGE: &str = "\
+cargo xtask e2e [STEP…]
+
+  terminal   progress on a pseudo-terminal, and Ctrl-C within 100 ms
+  full-disk  a disk that fills up while a picture is written
+  memory     hostile sources within 2 GiB of address space
+  licences   every dependency's licence is one that deny.toml allows
+  readme     every command of the README, in a fresh clone of HEAD
+
+Without STEP all are run. Needs python3, bash, git and, for full-disk, leave to mount a tmpfs.";
+
+/// Where things are.
+struct Place {
+    /// The repository.
+    root: PathBuf,
+    /// The built command.
+    rtc: PathBuf,
+    /// A folder for the step, empty at its start.
+    desk: PathBuf,
+}
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let ended = match arguments.split_first() {
+        Some((task, steps)) if task == "e2e" => e2e(steps),
+        _ => Err(USAGE.into()),
+    };
+    match ended {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => {
+            eprintln!("{why}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn e2e(wanted: &[String]) -> Outcome {
+    if let Some(unknown) = wanted.iter().find(|name| STEPS.iter().all(|(known, _)| known != name)) {
+        return Err(format!("no step `{unknown}`\n\n{USAGE}"));
+    }
+    let root =
+        Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("xtask has no parent folder")?.to_path_buf();
+    run(Command::new("cargo").args(["build", "--quiet", "--bin", "rtc"]).current_dir(&root))?;
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
+    let mut failed = vec![];
+    for (name, step) in STEPS.iter().filter(|(name, _)| wanted.is_empty() || wanted.iter().any(|w| w == name))
+    {
+        println!("e2e {name}");
+        let desk = target.join("e2e").join(name);
+        let place = Place { root: root.clone(), rtc: root.join(&target).join("debug/rtc"), desk };
+        let start = Instant::now();
+        match fresh(&place.desk).and_then(|()| step(&place)) {
+            Ok(()) => println!("e2e {name}: passed in {:.1} s", start.elapsed().as_secs_f64()),
+            Err(why) => {
+                println!("e2e {name}: FAILED: {why}");
+                failed.push(*name);
+            }
+        }
+    }
+    if failed.is_empty() { Ok(()) } else { Err(format!("e2e failed: {}", failed.join(", "))) }
+}
+
+/// Empties a folder, or makes it.
+fn fresh(folder: &Path) -> Outcome {
+    if folder.exists() {
+        fs::remove_dir_all(folder).map_err(|error| format!("cannot empty {}: {error}", folder.display()))?;
+    }
+    fs::create_dir_all(folder).map_err(|error| format!("cannot make {}: {error}", folder.display()))
+}
+
+/// Runs a program to its end; its output is shown as it comes.
+fn run(command: &mut Command) -> Outcome {
+    let program = command.get_program().to_string_lossy().into_owned();
+    let status =
+        command.status().map_err(|error| format!("{program} is needed and does not start: {error}"))?;
+    if status.success() { Ok(()) } else { Err(format!("{program} ended with {status}")) }
+}
+
+/// Runs one of the scripts in `xtask/e2e` in the step's folder.
+fn script(place: &Place, interpreter: &str, name: &str) -> Outcome {
+    let script = place.root.join("xtask/e2e").join(name);
+    run(Command::new(interpreter).arg(script).arg(&place.rtc).arg(&place.root).current_dir(&place.desk))
+}
+
+fn terminal(place: &Place) -> Outcome {
+    script(place, "python3", "terminal.py")
+}
+
+fn full_disk(place: &Place) -> Outcome {
+    script(place, "bash", "full-disk.sh")
+}
+
+fn memory(place: &Place) -> Outcome {
+    script(place, "bash", "memory.sh")
+}
+
+fn licences(place: &Place) -> Outcome {
+    script(place, "python3", "licences.py")
+}

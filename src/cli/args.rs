@@ -1,0 +1,296 @@
+//! The flags, their help, and how their values are read: strictly, and with the right form in each refusal.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand};
+use rt_lang::output::{Depth, MOST_PIXELS};
+use rt_lang::schema::{Key, KindId, Tonemap, Word, camera, render};
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// More threads than any machine has use for.
+const MOST_THREADS: usize = 1024;
+
+/// Renders .rt scenes: a small text that describes a picture becomes the picture.
+///
+/// A .rt file lists what is in the picture, each with its fields and units: `sphere { radius: 50cm }` alone
+/// is a scene. A camera, a light and materials are chosen where none are given, and the report says which.
+/// Mistakes are pointed at in the text, with their fix.
+#[derive(Parser)]
+#[command(name = "rtc", version, propagate_version = true, arg_required_else_help = true)]
+#[command(after_help = EXAMPLES, after_long_help = LONG)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  rtc build balls.rt                     make balls.png
+  rtc build balls.rt -o balls.exr        keep the radiance, to develop it later
+  rtc check balls.rt                     only look for mistakes
+  rtc develop balls.exr -o balls.png     develop it, at another exposure if you like
+
+`rtc build --help` tells about every flag.";
+
+const LONG: &str = "\
+A first scene, balls.rt:
+
+  camera { from: (0, 1, 4)m, look: (0, 0.5, 0)m }
+  light  { at: (2, 3, 2)m, power: 60W }
+  plane  { material: diffuse { color: #8a8f98 } }
+  sphere { at: (0, 0.5, 0)m, radius: 50cm, material: diffuse { color: #d94f30 } }
+
+Examples:
+  rtc build balls.rt                     make balls.png
+  rtc build balls.rt -o balls.exr        keep the radiance, to develop it later
+  rtc check balls.rt                     only look for mistakes
+  rtc develop balls.exr -o balls.png     develop it, at another exposure if you like
+
+Exit codes:
+  0    done (there may be warnings)
+  1    a scene has errors
+  2    the command line is wrong, or a file cannot be read or written
+  101  a bug in rtc
+  130  interrupted
+
+Colours are used on a terminal unless NO_COLOR is set.";
+
+/// What to do.
+#[derive(Subcommand)]
+pub enum Command {
+    /// Makes pictures from scenes.
+    #[command(after_help = BUILD_EXAMPLES)]
+    Build(Build),
+    /// Looks for mistakes in scenes, and makes no picture.
+    Check(Check),
+    /// Develops an EXR that `rtc build` made: exposure, tone mapping and format, without tracing again.
+    #[command(after_help = DEVELOP_EXAMPLES)]
+    Develop(Develop),
+}
+
+const BUILD_EXAMPLES: &str = "\
+Examples:
+  rtc build balls.rt --size 160x120 --samples 8      a quick look
+  rtc build balls.rt -o balls.png -o balls.exr       one picture in two forms
+  rtc build balls.rt --crop 0,0,320,240 -o part.exr  only the top left quarter
+  rtc build *.rt                                     each picture beside its scene
+  cat balls.rt | rtc build - -o - > balls.png        standard input and output";
+
+const DEVELOP_EXAMPLES: &str = "\
+Examples:
+  rtc develop balls.exr -o bright.png --exposure 1.5
+  rtc develop balls.exr -o film.png --tonemap agx --bits 16";
+
+/// Flags of `rtc build`.
+#[derive(Args)]
+pub struct Build {
+    /// Scenes to make pictures of, one after the other; `-` is standard input.
+    #[arg(value_name = "SCENE", required = true)]
+    pub scenes: Vec<PathBuf>,
+
+    /// Writes the picture here, in the format of the extension: png, exr, jpg, webp, hdr or pfm. May be given
+    /// several times. `-` is standard output as PNG, `exr:-` as EXR and so on. Without it, the picture goes
+    /// beside its scene as PNG.
+    #[arg(short, long = "output", value_name = "OUT")]
+    pub outputs: Vec<PathBuf>,
+
+    /// Makes the picture this many pixels wide and high, in place of the scene's `size`.
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+
+    /// Traces this many paths a pixel, in place of the scene's `samples` or `noise`. Twice as many take twice
+    /// as long and leave 0.7 of the noise.
+    #[arg(long, value_name = "N", value_parser = samples, allow_negative_numbers = true)]
+    pub samples: Option<u32>,
+
+    /// Chooses the random numbers, in place of the scene's `seed`. The same seed gives the same picture.
+    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
+    pub seed: Option<u64>,
+
+    /// Traces on this many threads. By default on all cores. The picture is the same for any number.
+    #[arg(short = 'j', long = "threads", value_name = "N", value_parser = threads, allow_negative_numbers = true)]
+    pub threads: Option<usize>,
+
+    /// Takes the picture with the camera of this name, in place of the one that `render` names.
+    #[arg(long, value_name = "NAME")]
+    pub camera: Option<String>,
+
+    /// Traces only a window: X and Y of its top left pixel, counted from 0 at the top left of the picture, then
+    /// its width and height. Its pixels are those of the whole picture.
+    #[arg(long, value_name = "X,Y,W,H", value_parser = crop)]
+    pub crop: Option<[u32; 4]>,
+
+    /// Brightens by this many stops, in place of the camera's `exposure`: 1 is twice as bright, -1 half. `auto`
+    /// chooses by the scene and prints the number.
+    #[arg(long, value_name = "STOPS|auto", value_parser = exposure, allow_negative_numbers = true)]
+    pub exposure: Option<Exposure>,
+
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub look: Look,
+
+    /// Says nothing but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// How a picture is developed and stored.
+#[derive(Args)]
+pub struct Look {
+    /// Goes from radiance to display by this curve, in place of the scene's `tonemap`.
+    #[arg(long, value_name = "NAME", value_parser = tonemaps())]
+    pub tonemap: Option<Tonemap>,
+
+    /// Bits a channel of PNG files.
+    #[arg(long, value_name = "8|16", default_value = "8", value_parser = depths())]
+    pub bits: Depth,
+}
+
+/// Flags of `rtc check`.
+#[derive(Args)]
+pub struct Check {
+    /// Scenes to look at; `-` is standard input.
+    #[arg(value_name = "FILE", required = true)]
+    pub files: Vec<PathBuf>,
+}
+
+/// Flags of `rtc develop`.
+#[derive(Args)]
+pub struct Develop {
+    /// The EXR to develop; `-` is standard input.
+    #[arg(value_name = "IN.exr")]
+    pub input: PathBuf,
+
+    /// Writes the picture here, in the format of the extension: png, exr, jpg, webp, hdr or pfm. May be given
+    /// several times. `-` is standard output as PNG, `jpg:-` as JPEG and so on.
+    #[arg(short, long = "output", value_name = "OUT", required = true)]
+    pub outputs: Vec<PathBuf>,
+
+    /// Brightens by this many stops: 1 is twice as bright, -1 half. By default by what the picture was built
+    /// with, which the EXR holds; 0 for one from another program.
+    #[arg(long, value_name = "STOPS", value_parser = stops, allow_negative_numbers = true)]
+    pub exposure: Option<f64>,
+
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub look: Look,
+}
+
+/// Value of `--exposure`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Exposure {
+    /// By the scene.
+    Auto,
+    /// So many stops.
+    Stops(f64),
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let wanted = || "width x height in pixels, such as 640x480".to_string();
+    let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wanted)?;
+    let side = |text: &str| text.parse::<u64>().map_err(|_| wanted());
+    let (width, height) = (side(width)?, side(height)?);
+    for side in [width, height] {
+        within(render::KIND, &render::SIZE, side, "a side")?;
+    }
+    Ok([width as u32, height as u32])
+}
+
+fn samples(text: &str) -> Result<u32, String> {
+    let n = whole(text, "a number of paths a pixel, such as 64")?;
+    within(render::KIND, &render::SAMPLES, n, "the number")?;
+    Ok(n as u32)
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    let n = whole(text, "a whole number, such as 7")?;
+    within(render::KIND, &render::SEED, n, "the seed")?;
+    Ok(n)
+}
+
+fn threads(text: &str) -> Result<usize, String> {
+    match whole(text, "a number of threads, such as 4")? {
+        0 => Err("at least one thread is needed; leave the flag out for all cores".into()),
+        n if n > MOST_THREADS as u64 => Err(format!("at most {MOST_THREADS} threads")),
+        n => Ok(n as usize),
+    }
+}
+
+fn crop(text: &str) -> Result<[u32; 4], String> {
+    let parts: Vec<u32> = text.split(',').map_while(|part| u32::from_str(part.trim()).ok()).collect();
+    match <[u32; 4]>::try_from(parts) {
+        Ok([_, _, 0, _] | [_, _, _, 0]) => Err("the window has no pixels".into()),
+        Ok(window) if text.split(',').count() == 4 => Ok(window),
+        _ => Err("x, y, width and height in whole pixels, such as 0,0,320,240".into()),
+    }
+}
+
+fn exposure(text: &str) -> Result<Exposure, String> {
+    if text == "auto" {
+        return Ok(Exposure::Auto);
+    }
+    stops(text).map(Exposure::Stops).map_err(|wanted| format!("{wanted}; or auto"))
+}
+
+fn stops(text: &str) -> Result<f64, String> {
+    let stops: f64 = text.parse().map_err(|_| "a number of stops, such as -1.5".to_string())?;
+    let range = camera::KIND.field(camera::EXPOSURE.index(camera::KIND)).range;
+    let wanted = || format!("a number of stops from {} to {}", range.low, range.high);
+    range.contains(stops).then_some(stops).ok_or_else(wanted)
+}
+
+fn whole(text: &str, wanted: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| wanted.to_string())
+}
+
+/// Holds a flag's value to the range of the field that it stands for.
+fn within<T>(kind: KindId, key: &Key<T>, n: u64, what: &str) -> Result<(), String> {
+    let range = kind.field(key.index(kind)).range;
+    let wanted = || format!("{what} is from {} to {}", range.low, range.high);
+    range.contains(n as f64).then_some(()).ok_or_else(wanted)
+}
+
+fn tonemaps() -> impl TypedValueParser<Value = Tonemap> {
+    let value = |word: &Word| PossibleValue::new(word.name).help(word.doc);
+    let words = PossibleValuesParser::new(Tonemap::WORDS.iter().map(value));
+    words.try_map(|word| Tonemap::from_word(&word).ok_or("not a curve"))
+}
+
+fn depths() -> impl TypedValueParser<Value = Depth> {
+    let bits = PossibleValuesParser::new(["8", "16"]);
+    bits.map(|bits| if bits == "16" { Depth::Sixteen } else { Depth::Eight })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_definitions_are_consistent() {
+        use clap::CommandFactory;
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn values_are_read_strictly() {
+        assert_eq!(size("640x480"), Ok([640, 480]));
+        assert_eq!(size("640×480"), Ok([640, 480]));
+        for wrong in ["", "640", "640x", "x480", "640x480x3", "-1x5", "0x480", "65537x1", "1e3x5", "6.4x4"] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(crop("0,0,320,240"), Ok([0, 0, 320, 240]));
+        for wrong in
+            ["", "0,0,320", "0,0,320,240,1", "0,0,0,240", "0,0,5,0", "-1,0,5,5", "0,0,5,5,", "a,0,5,5"]
+        {
+            assert!(crop(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(samples("64"), Ok(64));
+        assert!(samples("0").is_err() && samples("1.5").is_err() && samples("99999999").is_err());
+        assert!(threads("0").is_err() && threads("100000").is_err() && threads("-2").is_err());
+        assert_eq!(exposure("-1.25"), Ok(Exposure::Stops(-1.25)));
+        assert_eq!(exposure("auto"), Ok(Exposure::Auto));
+        assert!(exposure("nan").is_err() && exposure("inf").is_err() && exposure("1000").is_err());
+        assert!(seed("9007199254740993").is_err() && seed("-1").is_err());
+    }
+}

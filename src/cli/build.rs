@@ -1,0 +1,269 @@
+//! `rtc build`: scenes to pictures.
+
+use super::args::{Build, Exposure};
+use super::input::{self, is_standard};
+use super::interrupt::Interrupt;
+use super::progress::{Progress, duration};
+use super::target::{Staged, Target};
+use super::terminal::Terminal;
+use super::{Exit, Problem};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use rt_lang::compile;
+use rt_lang::diagnostic::Severity;
+use rt_lang::lower::Overrides;
+use rt_lang::output::{Depth, Facts, Format, Picture, encode};
+use rt_lang::render::{Cancelled, Control, Rendered, Shown, Tracer, Window};
+use rt_lang::scene::{Scene, Target as Goal};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A scene with the places of its picture.
+struct Job {
+    scene: PathBuf,
+    targets: Vec<Target>,
+}
+
+/// Makes the pictures in turn, also those behind one that fails.
+pub fn run(arguments: &Build, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
+    let jobs = plan(arguments)?;
+    let threads = ThreadPoolBuilder::new().num_threads(arguments.threads.unwrap_or(0)).build();
+    let threads = threads.map_err(|error| Problem::new(format!("cannot start the threads: {error}")))?;
+    let mut worst = Exit::Done;
+    for job in &jobs {
+        let exit = build(job, arguments, &threads, terminal, interrupt).unwrap_or_else(|problem| {
+            terminal.problem(&problem);
+            Exit::Usage
+        });
+        worst = worst.max(exit);
+    }
+    Ok(worst)
+}
+
+/// What goes where. Everything that can be seen to be wrong before a file is read is found here.
+fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
+    let scenes = &arguments.scenes;
+    if let Some(twice) = first_repeated(scenes) {
+        return Err(Problem::new(format!("the scene `{}` is given twice", twice.display())));
+    }
+    let jobs: Vec<Job> = match (scenes.as_slice(), arguments.outputs.as_slice()) {
+        ([scene], []) if is_standard(scene) => {
+            let problem = Problem::new("a scene from standard input has no name to put its picture beside");
+            return Err(problem.help("say where it goes: `-o picture.png`, or `-o -` for standard output"));
+        }
+        ([scene], outputs @ [_, ..]) => vec![Job { scene: scene.clone(), targets: targets(outputs)? }],
+        (_, [_, ..]) => {
+            let problem = Problem::new(format!("`-o` is for one scene, and here are {}", scenes.len()));
+            let help = "leave it out and each picture goes beside its scene, or build them one by one";
+            return Err(problem.help(help));
+        }
+        (scenes, []) => {
+            if scenes.iter().any(|scene| is_standard(scene)) {
+                return Err(Problem::new("standard input can only be built alone, with `-o`"));
+            }
+            let beside = |scene: &PathBuf| Job { scene: scene.clone(), targets: vec![Target::beside(scene)] };
+            scenes.iter().map(beside).collect()
+        }
+    };
+    let all: Vec<Target> = jobs.iter().flat_map(|job| job.targets.clone()).collect();
+    let paths: Vec<PathBuf> = all.iter().map(|target| target.path.clone()).collect();
+    if let Some(twice) = first_repeated(&paths) {
+        let problem = Problem::new(format!("two pictures would go to `{}`", twice.display()));
+        return Err(problem.help("give one of the scenes another name, or build them one by one with `-o`"));
+    }
+    refuse_inputs_as_outputs(scenes, &all)?;
+    refuse_idle_depth(arguments.look.bits, &all)?;
+    Ok(jobs)
+}
+
+/// The places that `-o` names.
+pub fn targets(outputs: &[PathBuf]) -> Result<Vec<Target>, Problem> {
+    let targets: Vec<Target> =
+        outputs.iter().map(|path| Target::from_argument(path)).collect::<Result<_, _>>()?;
+    let paths: Vec<PathBuf> = targets.iter().map(|target| target.path.clone()).collect();
+    match first_repeated(&paths) {
+        Some(twice) => Err(Problem::new(format!("the output `{}` is given twice", twice.display()))),
+        None => Ok(targets),
+    }
+}
+
+/// Nobody means to replace a scene by its picture.
+pub fn refuse_inputs_as_outputs(inputs: &[PathBuf], targets: &[Target]) -> Result<(), Problem> {
+    // Folders are refused when they are read.
+    let files = inputs.iter().filter(|path| !is_standard(path) && !path.is_dir());
+    let inputs: Vec<PathBuf> = files.map(|path| same(path)).collect();
+    match targets.iter().find(|target| !is_standard(&target.path) && inputs.contains(&same(&target.path))) {
+        Some(target) => {
+            let problem =
+                Problem::new(format!("`{}` would be replaced by its picture", target.path.display()));
+            Err(problem.help("name another output with `-o`"))
+        }
+        None => Ok(()),
+    }
+}
+
+/// `--bits 16` must find a PNG to apply to.
+pub fn refuse_idle_depth(depth: Depth, targets: &[Target]) -> Result<(), Problem> {
+    if depth == Depth::Eight || targets.iter().any(|target| target.format == Format::Png) {
+        return Ok(());
+    }
+    let problem = Problem::new("`--bits 16` is for PNG files, and no output is one");
+    Err(problem.help("exr, hdr and pfm hold floats, jpg and webp always 8 bits"))
+}
+
+fn first_repeated(paths: &[PathBuf]) -> Option<&PathBuf> {
+    let known: Vec<PathBuf> = paths.iter().map(|path| same(path)).collect();
+    (1..paths.len()).find(|&i| known[..i].contains(&known[i])).map(|i| &paths[i])
+}
+
+/// A path to compare by: links and dots resolved, as far as the file or its folder exists.
+fn same(path: &Path) -> PathBuf {
+    let in_folder = || {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        Some(fs::canonicalize(folder).ok()?.join(path.file_name()?))
+    };
+    fs::canonicalize(path).ok().or_else(in_folder).unwrap_or_else(|| path.into())
+}
+
+fn build(
+    job: &Job,
+    arguments: &Build,
+    threads: &ThreadPool,
+    terminal: Terminal,
+    interrupt: &Interrupt,
+) -> Result<Exit, Problem> {
+    let input = input::read(&job.scene)?;
+    if let Some(refused) = input.refused {
+        terminal.diagnostics(&[refused], &input.sources);
+        return Ok(Exit::Diagnostics);
+    }
+    let start = Instant::now();
+    let mut compiled = compile(&input.sources, input.id, &overrides(arguments));
+    if arguments.quiet {
+        compiled.diagnostics.retain(|diagnostic| diagnostic.severity() == Severity::Error);
+    }
+    terminal.diagnostics(&compiled.diagnostics, &input.sources);
+    let Some(scene) = compiled.scene else { return Ok(Exit::Diagnostics) };
+    let window = window(&scene, arguments.crop)?;
+    let staged = stage(job, window, interrupt)?;
+    let exposed = trace(&scene, window, job, arguments.quiet, threads, terminal, interrupt);
+    let Ok((rendered, stops)) = exposed else { interrupt.wait() };
+    let picture = threads.install(|| {
+        let (offset, size) = ([window.x, window.y], [window.width, window.height]);
+        Picture::gather(scene.trace.size, offset, size, |x, y| rendered.film.mean(x, y))
+    });
+    let facts = Facts {
+        samples: Some(u64::from(rendered.samples)),
+        seed: Some(scene.trace.seed),
+        scene: Some(scene.hash().to_hex().to_string()),
+        stops: Some(stops),
+        tonemap: Some(scene.develop.tonemap),
+        ..Facts::unknown()
+    };
+    threads.install(|| write(&picture, &facts, arguments.look.bits, staged))?;
+    if !arguments.quiet {
+        for note in &compiled.notes {
+            terminal.line(note);
+        }
+        let mut said = vec![names(&job.targets) + ":", format!("{}×{},", window.width, window.height)];
+        said.push(format!("{} samples", rendered.samples));
+        if matches!(scene.trace.target, Goal::Noise(_)) {
+            said.push(format!("(noise {:.2} %)", rendered.noise * 100.0));
+        }
+        said.push(format!("in {},", duration(start.elapsed())));
+        said.push(match scene.develop.exposure {
+            Some(stops) => format!("exposure {stops}"),
+            None => format!("exposure chosen: `exposure: {stops}` in the camera keeps it"),
+        });
+        terminal.line(&said.join(" "));
+    }
+    Ok(Exit::Done)
+}
+
+/// What the command line says in place of the file.
+fn overrides(arguments: &Build) -> Overrides {
+    Overrides {
+        camera: arguments.camera.clone(),
+        size: arguments.size,
+        samples: arguments.samples,
+        seed: arguments.seed,
+        exposure: arguments.exposure.map(|exposure| match exposure {
+            Exposure::Auto => None,
+            Exposure::Stops(stops) => Some(stops),
+        }),
+        tonemap: arguments.look.tonemap,
+    }
+}
+
+/// The pixels to trace.
+fn window(scene: &Scene, crop: Option<[u32; 4]>) -> Result<Window, Problem> {
+    let whole = Window::whole(scene.trace.size);
+    let window = crop.map_or(whole, |[x, y, width, height]| Window { x, y, width, height });
+    let ends = |start: u32, length: u32, most: u32| start.checked_add(length).is_some_and(|end| end <= most);
+    if !ends(window.x, window.width, whole.width) || !ends(window.y, window.height, whole.height) {
+        let [width, height] = scene.trace.size;
+        let problem =
+            Problem::new(format!("the crop does not lie within the picture, which is {width}×{height}"));
+        let help = "`--crop X,Y,W,H`: X + W is at most the width, Y + H the height";
+        return Err(problem.help(help));
+    }
+    Ok(window)
+}
+
+/// Makes sure before any work that every output can be written.
+fn stage(job: &Job, window: Window, interrupt: &Interrupt) -> Result<Vec<Staged>, Problem> {
+    for target in &job.targets {
+        if let Some(reason) = target.format.refuses([window.width, window.height]) {
+            return Err(Problem::new(reason.to_string()));
+        }
+    }
+    job.targets.iter().map(|target| target.stage(interrupt)).collect()
+}
+
+/// Traces a window, and gives with it the stops it is exposed by.
+fn trace(
+    scene: &Scene,
+    window: Window,
+    job: &Job,
+    quiet: bool,
+    threads: &ThreadPool,
+    terminal: Terminal,
+    interrupt: &Interrupt,
+) -> Result<(Rendered, f64), Cancelled> {
+    let control = Arc::new(Control::new());
+    interrupt.watch(control.clone());
+    let shown = terminal.interactive && !quiet;
+    let _progress = shown.then(|| Progress::watch(control.clone(), job.scene.display().to_string()));
+    threads.install(|| {
+        let tracer = Tracer::new(scene);
+        let prepass = tracer.prepass();
+        // Two digits, so that the number that is printed gives the very picture when it is written down.
+        let chosen = (prepass.exposure_stops * 100.0).round() / 100.0 + 0.0;
+        let stops = scene.develop.exposure.unwrap_or(chosen);
+        let shown = Shown { stops, tonemap: scene.develop.tonemap };
+        let rendered = tracer.render(window, scene.trace.target, &prepass, shown, &control)?;
+        Ok((rendered, stops))
+    })
+}
+
+/// Writes every form of a picture, and only then moves them to their places.
+pub fn write(picture: &Picture, facts: &Facts, depth: Depth, mut staged: Vec<Staged>) -> Result<(), Problem> {
+    for file in &mut staged {
+        let bytes = encode(picture, facts, file.target.format, depth);
+        let bytes = bytes.map_err(|reason| {
+            Problem::new(format!("cannot write {}: {reason}", names(std::slice::from_ref(&file.target))))
+        })?;
+        file.write(&bytes)?;
+    }
+    staged.into_iter().try_for_each(Staged::finish)
+}
+
+/// The outputs as a list.
+fn names(targets: &[Target]) -> String {
+    let name = |target: &Target| match is_standard(&target.path) {
+        true => "standard output".to_string(),
+        false => target.path.display().to_string(),
+    };
+    targets.iter().map(name).collect::<Vec<_>>().join(", ")
+}

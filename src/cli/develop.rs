@@ -1,0 +1,27 @@
+//! `rtc develop`: an EXR to other forms, without tracing.
+
+use super::args::Develop;
+use super::interrupt::Interrupt;
+use super::target::Staged;
+use super::{Exit, Problem, build, input};
+use rt_lang::output::{MOST_PIXELS, decode_exr};
+
+/// The largest EXR that is read: the most pixels, uncompressed, with a channel to spare.
+const LARGEST: u64 = MOST_PIXELS * 16;
+
+/// Develops one picture into all its outputs.
+pub fn run(arguments: &Develop, interrupt: &Interrupt) -> Result<Exit, Problem> {
+    let targets = build::targets(&arguments.outputs)?;
+    build::refuse_inputs_as_outputs(std::slice::from_ref(&arguments.input), &targets)?;
+    build::refuse_idle_depth(arguments.look.bits, &targets)?;
+    let bytes = input::read_bytes(&arguments.input, LARGEST)?;
+    let (picture, mut facts) = decode_exr(&bytes).map_err(|reason| {
+        Problem::new(format!("`{}` is not an EXR that can be developed: {reason}", arguments.input.display()))
+            .help("`rtc build scene.rt -o scene.exr` makes one")
+    })?;
+    facts.stops = arguments.exposure.or(facts.stops);
+    facts.tonemap = arguments.look.tonemap.or(facts.tonemap);
+    let staged: Result<Vec<Staged>, Problem> = targets.iter().map(|target| target.stage(interrupt)).collect();
+    build::write(&picture, &facts, arguments.look.bits, staged?)?;
+    Ok(Exit::Done)
+}

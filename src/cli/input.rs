@@ -1,0 +1,137 @@
+//! Scene files and standard input to sources.
+
+use super::{Problem, plain};
+use rt_lang::diagnostic::{Code, Diagnostic};
+use rt_lang::source::{Source, Sources};
+use rt_lang::span::{SourceId, Span};
+use std::fs::File;
+use std::io::{self, Read, stdin};
+use std::path::Path;
+
+/// The largest source, in bytes.
+const LARGEST: u64 = 256 << 20;
+
+/// A source that was read, and what is wrong with its bytes.
+pub struct Input {
+    /// Holds the one source.
+    pub sources: Sources,
+    /// Its id.
+    pub id: SourceId,
+    /// Why its text is not worth compiling, if it is not.
+    pub refused: Option<Diagnostic>,
+}
+
+/// Whether a path means standard input or output.
+pub fn is_standard(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Reads a scene.
+pub fn read(path: &Path) -> Result<Input, Problem> {
+    let (name, bytes) = if is_standard(path) {
+        ("<stdin>".to_string(), limited(stdin().lock(), LARGEST))
+    } else {
+        if path.is_dir() {
+            let problem = Problem::new(format!("`{}` is a folder, not a scene", path.display()));
+            return Err(problem.help("name a .rt file in it"));
+        }
+        (path.display().to_string(), File::open(path).and_then(|file| limited(file, LARGEST)))
+    };
+    let bytes = bytes.map_err(|error| Problem::new(format!("cannot read `{name}`: {}", plain(&error))))?;
+    Ok(take(name, bytes))
+}
+
+/// Reads the bytes of a picture.
+pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, Problem> {
+    let bytes = if is_standard(path) {
+        limited(stdin().lock(), most)
+    } else {
+        File::open(path).and_then(|file| limited(file, most))
+    };
+    let problem = |error| Problem::new(format!("cannot read `{}`: {}", path.display(), plain(&error)));
+    let bytes = bytes.map_err(problem)?;
+    if bytes.len() as u64 > most {
+        return Err(Problem::new(format!("`{}` is larger than {} MiB", path.display(), most >> 20)));
+    }
+    Ok(bytes)
+}
+
+/// At most one byte more than `most`, so that it shows when there are more.
+fn limited(from: impl Read, most: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = vec![];
+    from.take(most + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn take(name: String, bytes: Vec<u8>) -> Input {
+    let too_large = bytes.len() as u64 > LARGEST;
+    let (text, wrong) = match String::from_utf8(if too_large { vec![] } else { bytes }) {
+        Ok(text) => (text, None),
+        Err(error) => {
+            let at = error.utf8_error().valid_up_to();
+            let byte = error.as_bytes()[at];
+            // Up to the wrong byte the shown text has the same bytes; a few more show where it is.
+            let shown = &error.as_bytes()[..error.as_bytes().len().min(at + 200)];
+            (String::from_utf8_lossy(shown).into_owned(), Some((at, byte)))
+        }
+    };
+    let mut sources = Sources::default();
+    let id = sources.add(Source::new(name, text));
+    let refused = match wrong {
+        _ if too_large => Some(errors::too_large(id)),
+        Some((at, byte)) => Some(errors::not_utf8(id, at, byte)),
+        None => None,
+    };
+    Input { sources, id, refused }
+}
+
+mod errors {
+    use super::*;
+
+    pub fn not_utf8(id: SourceId, at: usize, byte: u8) -> Diagnostic {
+        let replacement = char::REPLACEMENT_CHARACTER.len_utf8();
+        Diagnostic::new(
+            Code::E0009,
+            "a scene is UTF-8 text, this is not",
+            Span::new(id, at, at + replacement),
+        )
+        .at(format!("byte 0x{byte:02X}, the {} of the file", ordinal(at + 1)))
+        .help("save the file as UTF-8")
+    }
+
+    pub fn too_large(id: SourceId) -> Diagnostic {
+        let message = format!("a scene file is at most {} MiB, this is larger", LARGEST >> 20);
+        Diagnostic::new(Code::E0406, message, Span::new(id, 0, 0))
+    }
+
+    fn ordinal(n: usize) -> String {
+        let suffix = match (n % 10, n % 100) {
+            (1, last) if last != 11 => "st",
+            (2, last) if last != 12 => "nd",
+            (3, last) if last != 13 => "rd",
+            _ => "th",
+        };
+        format!("{n}{suffix}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_that_are_no_text_are_pointed_at() {
+        let input = take("a.rt".into(), b"sphere {}\n\xc3\xa9 \xff rest".to_vec());
+        let refused = input.refused.unwrap();
+        assert_eq!(refused.code, Code::E0009);
+        assert_eq!(input.sources.get(input.id).line_column(refused.primary.span.start as usize), (2, 3));
+        assert_eq!(refused.primary.text, "byte 0xFF, the 14th of the file");
+        assert!(take("a.rt".into(), b"".to_vec()).refused.is_none());
+    }
+
+    #[test]
+    fn reading_stops_past_the_limit() {
+        assert_eq!(limited(io::repeat(1), 1000).unwrap().len(), 1001);
+        assert_eq!(limited(&b"abc"[..], 1000).unwrap(), b"abc");
+    }
+}

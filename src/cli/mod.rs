@@ -1,0 +1,100 @@
+//! The command: the only place that knows files, terminals, signals and exit codes.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`args`] | the flags, their help, and how their values are read |
+//! | [`input`] | scene files and standard input to sources |
+//! | [`target`] | where pictures go, and that they arrive there whole or not at all |
+//! | [`interrupt`] | Ctrl-C |
+//! | [`terminal`] | the one writer to standard error |
+//! | [`progress`] | how far a picture is |
+//! | [`build`], [`check`], [`develop`] | the commands |
+
+mod args;
+mod build;
+mod check;
+mod develop;
+mod input;
+mod interrupt;
+mod progress;
+mod target;
+mod terminal;
+
+use args::{Arguments, Command};
+use clap::Parser;
+use interrupt::Interrupt;
+use std::process::ExitCode;
+use terminal::Terminal;
+
+/// How a command ends. The worst of several is the greatest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Exit {
+    /// All is done.
+    Done = 0,
+    /// A scene has errors.
+    Diagnostics = 1,
+    /// The command line is wrong, or a file cannot be read or written.
+    Usage = 2,
+    /// By Ctrl-C or a request to end.
+    Interrupted = 130,
+}
+
+/// What is wrong with the command line or a file, in one sentence, and what to do.
+#[derive(Debug)]
+struct Problem {
+    message: String,
+    help: Option<String>,
+}
+
+impl Problem {
+    fn new(message: impl Into<String>) -> Problem {
+        Problem { message: message.into(), help: None }
+    }
+
+    fn help(self, help: impl Into<String>) -> Problem {
+        Problem { help: Some(help.into()), ..self }
+    }
+}
+
+/// What went wrong with a file, as a person says it: without error numbers, and without the name of a temporary
+/// file.
+fn plain(error: &std::io::Error) -> String {
+    let text = if error.raw_os_error().is_some() { error.to_string() } else { error.kind().to_string() };
+    text.split(" (os error").next().unwrap_or_default().to_lowercase()
+}
+
+/// Runs the command that the arguments name.
+pub fn main() -> ExitCode {
+    std::panic::set_hook(Box::new(report_panic));
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        // Help and version too: they come as an error that prints to standard output and exits with 0.
+        Err(error) => {
+            let printed = error.print();
+            let code = if printed.is_ok() { error.exit_code() } else { Exit::Usage as i32 };
+            return ExitCode::from(code as u8);
+        }
+    };
+    let terminal = Terminal::new();
+    let interrupt = Interrupt::install(terminal);
+    let ended = match arguments.command {
+        Command::Build(build) => build::run(&build, terminal, &interrupt),
+        Command::Check(check) => Ok(check::run(&check, terminal)),
+        Command::Develop(develop) => develop::run(&develop, &interrupt),
+    };
+    let exit = ended.unwrap_or_else(|problem| {
+        terminal.problem(&problem);
+        Exit::Usage
+    });
+    ExitCode::from(exit as u8)
+}
+
+/// A panic is a bug here, whatever the input was; the exit code is then 101.
+fn report_panic(panic: &std::panic::PanicHookInfo<'_>) {
+    let message = panic.payload_as_str().unwrap_or("no message");
+    let place = panic.location().map_or_else(String::new, |at| format!(" at {at}"));
+    Terminal::new().line(&format!(
+        "rtc {} failed{place}: {message}\nThis is a bug in rtc. Please report it with these lines and the scene.",
+        env!("CARGO_PKG_VERSION")
+    ));
+}

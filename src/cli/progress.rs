@@ -1,0 +1,100 @@
+//! How far a picture is, on a terminal's standard error.
+
+use rt_lang::render::Control;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// How often the bar is drawn.
+const PERIOD: Duration = Duration::from_millis(100);
+
+/// A bar that is drawn until this is dropped, which also wipes it.
+pub struct Progress {
+    finished: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Progress {
+    /// Watches a render.
+    pub fn watch(control: Arc<Control>, name: String) -> Progress {
+        let finished = Arc::new(AtomicBool::new(false));
+        let seen = finished.clone();
+        // Without a thread to draw it there is no bar, and nothing else is lost.
+        let thread = std::thread::Builder::new().spawn(move || draw(&control, name, &seen)).ok();
+        Progress { finished, thread }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.finished.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            thread.thread().unpark();
+            // A panic in there has been reported by the hook.
+            let _ = thread.join();
+        }
+    }
+}
+
+fn draw(control: &Control, name: String, finished: &AtomicBool) {
+    let start = Instant::now();
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+    let style = ProgressStyle::with_template("{prefix} {bar:24} {percent:>3} %  {msg}");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar.set_prefix(name);
+    while !finished.load(Ordering::Relaxed) {
+        let progress = control.progress();
+        let elapsed = start.elapsed();
+        bar.set_length(progress.total);
+        bar.set_position(progress.done);
+        bar.set_message(message(progress.done, progress.total, elapsed));
+        std::thread::park_timeout(PERIOD);
+    }
+    bar.finish_and_clear();
+}
+
+/// `12.3 M samples/s  4 s left`.
+fn message(done: u64, total: u64, elapsed: Duration) -> String {
+    if done == 0 || elapsed.is_zero() {
+        return String::new();
+    }
+    let rate = done as f64 / elapsed.as_secs_f64();
+    let left = total.saturating_sub(done) as f64 / rate;
+    format!("{:.2} M samples/s  {} left", rate / 1e6, duration(Duration::from_secs_f64(left.min(1e9))))
+}
+
+/// A time as one says it: `850 ms`, `2.3 s`, `1 min 12 s`, `3 h 05 min`.
+pub fn duration(time: Duration) -> String {
+    let seconds = time.as_secs_f64();
+    let whole = seconds.round() as u64;
+    match seconds {
+        s if s < 0.9995 => format!("{:.0} ms", s * 1e3),
+        s if s < 9.95 => format!("{s:.1} s"),
+        s if s < 59.5 => format!("{s:.0} s"),
+        s if s < 3599.5 => format!("{} min {:02} s", whole / 60, whole % 60),
+        _ => format!("{} h {:02} min", whole / 3600, whole % 3600 / 60),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_read_well() {
+        let said = |seconds| duration(Duration::from_secs_f64(seconds));
+        assert_eq!(said(0.0123), "12 ms");
+        assert_eq!(said(2.34), "2.3 s");
+        assert_eq!(said(42.0), "42 s");
+        assert_eq!(said(72.0), "1 min 12 s");
+        assert_eq!(said(11_100.0), "3 h 05 min");
+    }
+
+    #[test]
+    fn no_work_yet_says_nothing() {
+        assert_eq!(message(0, 0, Duration::ZERO), "");
+        assert_eq!(message(1_000_000, 3_000_000, Duration::from_secs(1)), "1.00 M samples/s  2.0 s left");
+    }
+}

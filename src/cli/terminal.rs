@@ -1,0 +1,65 @@
+//! The one writer to standard error. What cannot be written there is lost, and that is no reason to stop.
+
+use super::Problem;
+use anstream::{AutoStream, ColorChoice};
+use rt_lang::diagnostic::Diagnostic;
+use rt_lang::report::{self, Style};
+use rt_lang::source::Sources;
+use std::io::{IsTerminal, Write, stderr};
+
+/// Columns where there is no terminal to ask.
+const WIDTH: usize = 100;
+
+/// What standard error is, and how text on it looks.
+#[derive(Clone, Copy, Debug)]
+pub struct Terminal {
+    /// Whether a person may be watching.
+    pub interactive: bool,
+    style: Style,
+}
+
+impl Terminal {
+    /// Looks at standard error and the environment: `NO_COLOR`, `CLICOLOR`, `CLICOLOR_FORCE`, `TERM` and the
+    /// locale.
+    pub fn new() -> Terminal {
+        let interactive = stderr().is_terminal();
+        let color = AutoStream::choice(&stderr()) != ColorChoice::Never;
+        let width = terminal_size::terminal_size_of(stderr()).map_or(WIDTH, |(width, _)| width.0.into());
+        let unicode = !interactive || locale_is_unicode();
+        Terminal { interactive, style: Style { color, unicode, width } }
+    }
+
+    /// Writes a line.
+    pub fn line(self, text: &str) {
+        self.text(&format!("{text}\n"));
+    }
+
+    /// Says what is wrong with the command or a file.
+    pub fn problem(self, problem: &Problem) {
+        let (on, off) = if self.style.color { ("\u{1b}[1;31m", "\u{1b}[0m") } else { ("", "") };
+        self.line(&format!("{on}error:{off} {}", problem.message));
+        if let Some(help) = &problem.help {
+            self.line(&format!("  help: {help}"));
+        }
+    }
+
+    /// Shows what the compiler has to say.
+    pub fn diagnostics(self, diagnostics: &[Diagnostic], sources: &Sources) {
+        self.text(&report::all(diagnostics, sources, self.style));
+    }
+
+    fn text(self, text: &str) {
+        let mut stderr = stderr().lock();
+        let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
+    }
+}
+
+/// Whether the locale's characters are UTF-8; where none is set, they are taken to be.
+fn locale_is_unicode() -> bool {
+    let set = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().filter_map(std::env::var_os);
+    let locale = set.into_iter().find(|value| !value.is_empty());
+    locale.is_none_or(|locale| {
+        let locale = locale.to_string_lossy().to_ascii_lowercase();
+        locale.contains("utf-8") || locale.contains("utf8")
+    })
+}

@@ -1,0 +1,156 @@
+//! OpenEXR: scene radiance in 32-bit floats, with how it came about in the attributes.
+
+use super::{CannotDecode, CannotEncode, Facts, MOST_PIXELS, Picture, finite};
+use crate::schema::Tonemap;
+use exr::meta::MetaData;
+use exr::meta::attribute::{AttributeValue, Chromaticities, IntegerBounds, LineOrder, Text};
+use exr::meta::header::{ImageAttributes, LayerAttributes};
+use exr::prelude::{
+    Blocks, Compression, Encoding, Image, Layer, ReadChannels, ReadLayers, SpecificChannels, Vec2,
+    WritableImage, read,
+};
+use std::io::Cursor;
+
+// Attributes of our own. `exposure` without a prefix would be the standard's exposure time in seconds.
+const SAMPLES: &str = "rtc.samples";
+const SEED: &str = "rtc.seed";
+const SCENE: &str = "rtc.scene";
+const STOPS: &str = "rtc.exposure";
+const TONEMAP: &str = "rtc.tonemap";
+
+/// Chromaticities of sRGB's primaries and white (ITU-R BT.709, D65).
+const SRGB: Chromaticities = Chromaticities {
+    red: Vec2(0.64, 0.33),
+    green: Vec2(0.3, 0.6),
+    blue: Vec2(0.15, 0.06),
+    white: Vec2(0.3127, 0.329),
+};
+
+/// A file with the channels R, G and B. The display window is the whole picture, the data window what was
+/// traced of it.
+pub(super) fn encode(picture: &Picture, facts: &Facts) -> Result<Vec<u8>, CannotEncode> {
+    let position = Vec2(picture.offset[0] as i32, picture.offset[1] as i32);
+    let size = Vec2(picture.size[0] as usize, picture.size[1] as usize);
+    let whole = Vec2(picture.whole[0] as usize, picture.whole[1] as usize);
+    let pixel = |at: Vec2<usize>| {
+        let [r, g, b] = picture.pixels[at.y() * size.x() + at.x()];
+        (r, g, b)
+    };
+    let mut image = ImageAttributes::new(IntegerBounds::new((0, 0), whole));
+    image.chromaticities = Some(SRGB);
+    let layer = Layer::new(size, attributes(facts, position), ENCODING, SpecificChannels::rgb(pixel));
+    let mut file = Cursor::new(Vec::new());
+    let written = Image::empty(image).with_layer(layer).write().to_buffered(&mut file);
+    written.map_err(|error| CannotEncode(error.to_string()))?;
+    let mut file = file.into_inner();
+    sort_header(&mut file).ok_or_else(|| CannotEncode("the header just written cannot be read".into()))?;
+    Ok(file)
+}
+
+/// Lossless; lines in order, for the same bytes on any number of threads.
+const ENCODING: Encoding = Encoding {
+    compression: Compression::ZIP16,
+    blocks: Blocks::ScanLines,
+    line_order: LineOrder::Increasing,
+};
+
+fn attributes(facts: &Facts, position: Vec2<i32>) -> LayerAttributes {
+    let mut layer = LayerAttributes { software_name: text(&facts.software), ..LayerAttributes::default() };
+    layer.layer_position = position;
+    // 64 bits do not fit an integer attribute, and a text shows in every viewer.
+    let texts = [
+        (SAMPLES, facts.samples.map(|n| n.to_string())),
+        (SEED, facts.seed.map(|n| n.to_string())),
+        (SCENE, facts.scene.clone()),
+        (TONEMAP, facts.tonemap.map(|curve| curve.word().to_string())),
+    ];
+    let texts = texts.into_iter().filter_map(|(name, value)| Some((name, text(&value?)?)));
+    layer.other.extend(texts.map(|(name, value)| (Text::from(name), AttributeValue::Text(value))));
+    layer.other.extend(facts.stops.map(|stops| (Text::from(STOPS), AttributeValue::F64(stops))));
+    layer
+}
+
+fn text(value: &str) -> Option<Text> {
+    Text::new_or_none(value)
+}
+
+/// Puts the header's attributes into the order of their names: the writer's is that of a hash map, another
+/// at each run. None where the bytes are no header.
+///
+/// Layout (OpenEXR file layout, "Header"): after 8 bytes of magic number and version come the attributes,
+/// each a name and a type ended by zero, a 32-bit length and so many bytes; an empty name ends them.
+fn sort_header(file: &mut [u8]) -> Option<()> {
+    const START: usize = 8;
+    let mut entries: Vec<&[u8]> = vec![];
+    let mut rest = file.get(START..)?;
+    while *rest.first()? != 0 {
+        let name = rest.iter().position(|&byte| byte == 0)? + 1;
+        let kind = rest.get(name..)?.iter().position(|&byte| byte == 0)? + 1;
+        let length = rest.get(name + kind..)?.first_chunk::<4>()?;
+        let end = name + kind + 4 + u32::from_le_bytes(*length) as usize;
+        let (entry, after) = rest.split_at_checked(end)?;
+        entries.push(entry);
+        rest = after;
+    }
+    entries.sort_unstable();
+    let sorted = entries.concat();
+    file[START..START + sorted.len()].copy_from_slice(&sorted);
+    Some(())
+}
+
+/// Reads the first layer with channels R, G and B, from any program. What is not a number becomes 0, what is
+/// infinite the greatest finite value.
+pub fn decode(file: &[u8]) -> Result<(Picture, Facts), CannotDecode> {
+    let refuse = |error: exr::error::Error| CannotDecode(error.to_string());
+    let meta = MetaData::read_from_buffered(Cursor::new(file), false).map_err(refuse)?;
+    for header in &meta.headers {
+        let pixels = header.layer_size.0 as u64 * header.layer_size.1 as u64;
+        if pixels > MOST_PIXELS {
+            return Err(CannotDecode(format!(
+                "it has {pixels} pixels, and at most {MOST_PIXELS} are allowed"
+            )));
+        }
+    }
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .rgb_channels(
+            |size, _| (size.width(), vec![[0.0f32; 3]; size.area()]),
+            |(width, pixels), at, (r, g, b): (f32, f32, f32)| {
+                pixels[at.y() * *width + at.x()] = [r, g, b].map(finite);
+            },
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .from_buffered(Cursor::new(file))
+        .map_err(refuse)?;
+    let layer = image.layer_data;
+    let display = image.attributes.display_window;
+    let offset = layer.attributes.layer_position - display.position;
+    let picture = Picture {
+        size: [layer.size.x() as u32, layer.size.y() as u32],
+        offset: [offset.x().max(0) as u32, offset.y().max(0) as u32],
+        whole: [display.size.x() as u32, display.size.y() as u32],
+        pixels: layer.channel_data.pixels.1,
+    };
+    Ok((picture, facts(&layer.attributes)))
+}
+
+fn facts(layer: &LayerAttributes) -> Facts {
+    let text = |name: &str| match layer.other.get(&Text::from(name)) {
+        Some(AttributeValue::Text(text)) => Some(text.to_string()),
+        _ => None,
+    };
+    let stops = match layer.other.get(&Text::from(STOPS)) {
+        Some(AttributeValue::F64(stops)) if stops.is_finite() => Some(*stops),
+        _ => None,
+    };
+    Facts {
+        software: layer.software_name.as_ref().map_or_else(String::new, Text::to_string),
+        samples: text(SAMPLES).and_then(|n| n.parse().ok()),
+        seed: text(SEED).and_then(|n| n.parse().ok()),
+        scene: text(SCENE),
+        stops,
+        tonemap: text(TONEMAP).and_then(|word| Tonemap::from_word(&word)),
+    }
+}

@@ -1,0 +1,189 @@
+//! Diagnostics to text for a person, through miette, which nothing else uses.
+//!
+//! Sources may come from anywhere: a line is shown only around the place that is meant, however long it is,
+//! control characters are shown as `�` so that no text can steer the terminal, and only so many diagnostics
+//! are shown that the first of them is not swept away.
+
+mod excerpt;
+
+use crate::diagnostic::{Diagnostic, Label, Severity};
+use crate::source::Sources;
+use crate::span::Span;
+use excerpt::Excerpt;
+use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, ThemeCharacters, ThemeStyles};
+use std::fmt;
+
+/// The most diagnostics that [`all`] shows.
+pub const MOST_SHOWN: usize = 50;
+
+/// How the text looks.
+#[derive(Clone, Copy, Debug)]
+pub struct Style {
+    /// Whether a terminal's colours are used.
+    pub color: bool,
+    /// Whether more than ASCII may be used to draw.
+    pub unicode: bool,
+    /// Columns of the terminal. Source lines are cut to fit; sentences are not broken.
+    pub width: usize,
+}
+
+/// All diagnostics in the order of their places, errors before warnings where not all can be shown, and a
+/// line with their count. Empty where there are none.
+pub fn all(diagnostics: &[Diagnostic], sources: &Sources, style: Style) -> String {
+    let mut shown: Vec<&Diagnostic> = diagnostics.iter().collect();
+    shown.sort_by_key(|diagnostic| (diagnostic.severity(), place(diagnostic)));
+    shown.truncate(MOST_SHOWN);
+    shown.sort_by_key(|diagnostic| place(diagnostic));
+    let mut text = String::new();
+    for diagnostic in &shown {
+        text.push_str(&human(diagnostic, sources, style));
+        text.push('\n');
+    }
+    if shown.len() < diagnostics.len() {
+        text.push_str(&format!("… and {} more\n", diagnostics.len() - shown.len()));
+    }
+    if let Some(first) = shown.first() {
+        let name = printable(&sources.get(first.primary.span.source).name);
+        text.push_str(&format!("{} in {name}\n", count(diagnostics)));
+    }
+    text
+}
+
+/// One diagnostic: code and message, the place with its labels, the help, and the uses that led there.
+pub fn human(diagnostic: &Diagnostic, sources: &Sources, style: Style) -> String {
+    let source = sources.get(diagnostic.primary.span.source);
+    let (here, elsewhere): (Vec<&Label>, Vec<&Label>) = std::iter::once(&diagnostic.primary)
+        .chain(&diagnostic.labels)
+        .partition(|label| label.span.source == diagnostic.primary.span.source);
+    let spans: Vec<Span> = here.iter().map(|label| label.span).collect();
+    let excerpt = Excerpt::new(source, &spans, style.width);
+    let labels = here.iter().zip(excerpt.ranges()).enumerate().map(|(index, (label, range))| {
+        let text = (!label.text.is_empty()).then(|| printable(&label.text));
+        match index {
+            0 => LabeledSpan::new_primary_with_span(text, range),
+            _ => LabeledSpan::new_with_span(text, range),
+        }
+    });
+    let shown = Shown {
+        message: printable(&diagnostic.message),
+        severity: diagnostic.severity(),
+        labels: labels.collect(),
+        help: diagnostic.help.as_deref().map(printable),
+        excerpt: &excerpt,
+    };
+    let mut text = String::new();
+    let rendered = handler(diagnostic, style).render_report(&mut text, &shown);
+    // Writing to a string does not fail, and the excerpt has every place that a label names.
+    debug_assert!(rendered.is_ok(), "a label outside the excerpt");
+    // miette indents the first line by two columns.
+    let mut text = text.trim_start().to_string();
+    for label in elsewhere {
+        text.push_str(&format!("  {}: {}\n", printable(&label.text), at(label.span, sources)));
+    }
+    for &span in &diagnostic.uses {
+        text.push_str(&format!("  in `{}`, {}\n", head(sources.text(span)), at(span, sources)));
+    }
+    text
+}
+
+fn handler(diagnostic: &Diagnostic, style: Style) -> GraphicalReportHandler {
+    let mut characters = if style.unicode { ThemeCharacters::unicode() } else { ThemeCharacters::ascii() };
+    let code = diagnostic.code.as_str();
+    characters.error = format!("{code} {}", if style.unicode { "×" } else { "x" });
+    characters.warning = format!("{code} {}", if style.unicode { "⚠" } else { "!" });
+    let styles = if style.color { ThemeStyles::ansi() } else { ThemeStyles::none() };
+    GraphicalReportHandler::new_themed(GraphicalTheme { characters, styles })
+        .with_context_lines(0)
+        .with_wrap_lines(false)
+        .without_syntax_highlighting()
+}
+
+/// Where a diagnostic stands, to sort by.
+fn place(diagnostic: &Diagnostic) -> (Span, &'static str) {
+    (diagnostic.primary.span, diagnostic.code.as_str())
+}
+
+/// `3 errors, 1 warning`.
+fn count(diagnostics: &[Diagnostic]) -> String {
+    let counted = |severity, word| {
+        let n = diagnostics.iter().filter(|diagnostic| diagnostic.severity() == severity).count();
+        (n > 0).then(|| format!("{n} {word}{}", if n == 1 { "" } else { "s" }))
+    };
+    let parts = [counted(Severity::Error, "error"), counted(Severity::Warning, "warning")];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+/// `garden.rt:31:5`.
+fn at(span: Span, sources: &Sources) -> String {
+    let source = sources.get(span.source);
+    let (line, column) = source.line_column(span.start as usize);
+    format!("{}:{line}:{column}", printable(&source.name))
+}
+
+/// The head of a statement, enough to know it by: up to its `{` or the end of the line.
+fn head(text: &str) -> String {
+    const MOST: usize = 40;
+    let end = text.find(['{', '\n', '\r']).unwrap_or(text.len());
+    let text = text[..end].trim();
+    match text.char_indices().nth(MOST) {
+        Some((cut, _)) => printable(&text[..cut]) + "…",
+        None => printable(text),
+    }
+}
+
+/// A text that cannot steer a terminal, nor reorder what is shown beside it.
+fn printable(text: &str) -> String {
+    text.chars().map(printable_char).collect()
+}
+
+fn printable_char(c: char) -> char {
+    let reorders = matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    if c != '\t' && (c.is_control() || reorders) { char::REPLACEMENT_CHARACTER } else { c }
+}
+
+/// What miette is given.
+struct Shown<'a> {
+    message: String,
+    severity: Severity,
+    labels: Vec<LabeledSpan>,
+    help: Option<String>,
+    excerpt: &'a Excerpt,
+}
+
+impl fmt::Debug for Shown<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl fmt::Display for Shown<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Shown<'_> {}
+
+impl miette::Diagnostic for Shown<'_> {
+    fn severity(&self) -> Option<miette::Severity> {
+        Some(match self.severity {
+            Severity::Error => miette::Severity::Error,
+            Severity::Warning => miette::Severity::Warning,
+        })
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.help.as_ref().map(|help| Box::new(help) as _)
+    }
+
+    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
+        Some(self.excerpt)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        Some(Box::new(self.labels.iter().cloned()))
+    }
+}
+
+#[cfg(test)]
+mod tests;
