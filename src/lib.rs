@@ -30,6 +30,7 @@ pub mod eval;
 pub mod lower;
 pub mod math;
 pub mod output;
+pub mod render;
 pub mod report;
 pub mod scene;
 pub mod schema;

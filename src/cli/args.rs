@@ -2,7 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use rt_lang::output::{Depth, MOST_PIXELS};
+use rt_lang::output::Depth;
 use rt_lang::schema::{Key, KindId, Tonemap, Word, camera, render};
 use std::path::PathBuf;
 use std::str::FromStr;

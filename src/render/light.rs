@@ -1,0 +1,475 @@
+//! Where light comes from, and how to draw a direction towards it.
+//!
+//! At every vertex one light is chosen with a probability that follows a cheap estimate of what it gives there.
+//! Each `sample` stands beside the `pdf` with which a ray that was scattered towards the light would have been
+//! drawn, so that the two ways can share the work (multiple importance sampling).
+
+use super::shape::{Face, Place, SurfacePoint};
+use super::warp;
+use crate::color::{Rgb, luminance};
+use crate::math::{DVec3, PI, basis};
+use crate::scene::shape::Quadric;
+use crate::scene::{Light, Material, PrimitiveId, Scene, Shape};
+use std::collections::BTreeMap;
+
+/// What gives light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Source {
+    /// Index into [`Scene::lights`].
+    Light(u32),
+    /// A glowing surface.
+    Primitive(PrimitiveId),
+}
+
+/// Where light is wanted.
+#[derive(Clone, Copy, Debug)]
+pub struct Receiver {
+    /// The point.
+    pub p: DVec3,
+    /// Unit normal on the side from which light may come; none where it may come from all sides.
+    pub n: Option<DVec3>,
+}
+
+/// A direction towards a light.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSample {
+    /// Towards the light.
+    pub wi: DVec3,
+    /// How far away it is, maybe infinitely.
+    pub distance: f64,
+    /// Radiance from there if nothing is in between; of a point or a distant one its irradiance on a surface
+    /// that faces it.
+    pub radiance: Rgb,
+    /// Density in solid angle; 1 where there is but one direction.
+    pub pdf: f64,
+    /// Whether there is but one direction, so that no scattered ray finds it.
+    pub delta: bool,
+    /// The point on a glowing surface that the direction leads to.
+    pub target: Option<Target>,
+}
+
+/// A point on a glowing surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Target {
+    /// Where.
+    pub p: DVec3,
+    /// On which surface.
+    pub place: Place,
+    /// Whether the surface may hide its own points.
+    pub hides_itself: bool,
+}
+
+/// All lights of a scene that can be sampled.
+pub struct Lights {
+    lamps: Vec<Lamp>,
+    by_source: BTreeMap<Source, u32>,
+    /// Those that are seen where a ray leaves the scene.
+    beyond: Vec<u32>,
+}
+
+/// One of them.
+pub struct Lamp {
+    source: Source,
+    radiance: Rgb,
+    kind: Kind,
+}
+
+enum Kind {
+    /// The radiance is an intensity.
+    Point {
+        position: DVec3,
+    },
+    /// The radiance is that of the disc, or without a disc the irradiance.
+    Sun {
+        direction: DVec3,
+        sine: f64,
+    },
+    Sky,
+    Sphere {
+        id: PrimitiveId,
+        center: DVec3,
+        radius: f64,
+    },
+    Quadric(Box<GlowingQuadric>),
+}
+
+struct GlowingQuadric {
+    id: PrimitiveId,
+    quadric: Quadric,
+    area: f64,
+    /// Middle of its box, and half the diagonal squared.
+    center: DVec3,
+    extent_squared: f64,
+    parts: Vec<Part>,
+}
+
+/// A stretch of the side, or a cap.
+struct Part {
+    face: Face,
+    /// From and to in object space's y; for a cap twice the same.
+    stretch: [f64; 2],
+    /// Of the whole area.
+    share: f64,
+    area: f64,
+}
+
+/// What the uniform share in choosing a light is. It bounds the noise where the estimates are far off.
+const UNIFORM: f64 = 0.1;
+
+impl Lights {
+    /// Collects the lights of a scene. Surfaces without end are left out: only scattered rays find them.
+    pub fn new(scene: &Scene) -> Lights {
+        let lights = (0..).zip(&scene.lights).map(|(i, light)| Lamp::from_light(Source::Light(i), light));
+        let glowing = (0..).map(PrimitiveId).zip(&scene.primitives).filter_map(|(id, primitive)| match scene
+            .material(primitive)
+        {
+            Material::Emitter { radiance } => Lamp::from_surface(id, &primitive.shape, *radiance),
+            _ => None,
+        });
+        let lamps: Vec<Lamp> =
+            lights.chain(glowing).filter(|lamp| lamp.radiance.max_element() > 0.0).collect();
+        let by_source = lamps.iter().zip(0..).map(|(lamp, index)| (lamp.source, index)).collect();
+        let is_beyond = |lamp: &Lamp| matches!(lamp.kind, Kind::Sky | Kind::Sun { .. });
+        let beyond =
+            lamps.iter().zip(0..).filter(|(lamp, _)| is_beyond(lamp)).map(|(_, index)| index).collect();
+        Lights { lamps, by_source, beyond }
+    }
+
+    /// Whether there is nothing to sample.
+    pub fn is_empty(&self) -> bool {
+        self.lamps.is_empty()
+    }
+
+    /// Sum of the estimates of what each light gives, for [`Lights::choose`] and [`Lights::probability`].
+    pub fn total(&self, receiver: &Receiver) -> f64 {
+        self.lamps.iter().map(|lamp| lamp.estimate(receiver)).sum()
+    }
+
+    /// Chooses a light, with its probability; the number is made uniform again for further use.
+    pub fn choose(&self, receiver: &Receiver, total: f64, u: f64) -> (&Lamp, f64, f64) {
+        let mut sum = 0.0;
+        let last = self.lamps.len() - 1;
+        for (i, lamp) in self.lamps.iter().enumerate() {
+            let probability = self.chance(lamp, receiver, total);
+            if u < sum + probability || i == last {
+                let rest = ((u - sum) / probability).clamp(0.0, 1.0 - f64::EPSILON);
+                return (lamp, probability, rest);
+            }
+            sum += probability;
+        }
+        unreachable!("the last light is always taken")
+    }
+
+    /// Density with which a direction towards a source is drawn at a receiver, the choice of the light included.
+    /// `point` is what a ray in that direction meets.
+    pub fn pdf(
+        &self,
+        source: Source,
+        receiver: &Receiver,
+        total: f64,
+        wi: DVec3,
+        point: Option<(&SurfacePoint, Face)>,
+    ) -> f64 {
+        let Some(&index) = self.by_source.get(&source) else { return 0.0 };
+        let lamp = &self.lamps[index as usize];
+        let density = lamp.pdf(receiver, wi, point);
+        if density > 0.0 { density * self.chance(lamp, receiver, total) } else { 0.0 }
+    }
+
+    /// The sky and the suns: what is seen beyond the scene in a direction, each with its source.
+    pub fn beyond(&self, direction: DVec3) -> impl Iterator<Item = (Source, Rgb)> + '_ {
+        self.beyond
+            .iter()
+            .map(|&index| &self.lamps[index as usize])
+            .filter(move |lamp| lamp.is_seen_beyond(direction))
+            .map(|lamp| (lamp.source, lamp.radiance))
+    }
+
+    /// The greatest channel of any light's radiance; of a point its intensity.
+    pub fn peak(&self) -> f64 {
+        self.lamps.iter().map(|lamp| lamp.radiance.max_element()).fold(0.0, f64::max)
+    }
+
+    fn chance(&self, lamp: &Lamp, receiver: &Receiver, total: f64) -> f64 {
+        let uniform = 1.0 / self.lamps.len() as f64;
+        if total > 0.0 {
+            UNIFORM * uniform + (1.0 - UNIFORM) * lamp.estimate(receiver) / total
+        } else {
+            uniform
+        }
+    }
+}
+
+impl Lamp {
+    fn from_light(source: Source, light: &Light) -> Lamp {
+        let (radiance, kind) = match *light {
+            Light::Point { position, intensity } => (intensity, Kind::Point { position }),
+            Light::Sun { direction, irradiance, radius } => {
+                let sine = crate::math::sin(radius);
+                let radiance = if sine > 0.0 { irradiance / (PI * sine * sine) } else { irradiance };
+                (radiance, Kind::Sun { direction, sine })
+            }
+            Light::Sky { radiance } => (radiance, Kind::Sky),
+        };
+        Lamp { source, radiance, kind }
+    }
+
+    fn from_surface(id: PrimitiveId, shape: &Shape, radiance: Rgb) -> Option<Lamp> {
+        let kind = match shape {
+            Shape::Sphere { center, radius } => Kind::Sphere { id, center: *center, radius: *radius },
+            Shape::Plane { .. } => return None,
+            Shape::Quadric(quadric) => Kind::Quadric(Box::new(GlowingQuadric::new(id, quadric, shape)?)),
+        };
+        Some(Lamp { source: Source::Primitive(id), radiance, kind })
+    }
+
+    /// What it is.
+    pub fn source(&self) -> Source {
+        self.source
+    }
+
+    /// About the irradiance at a receiver, were nothing in between. Only ratios matter, and they need not be
+    /// right, but it is the same each time it is asked.
+    fn estimate(&self, receiver: &Receiver) -> f64 {
+        let strength = luminance(self.radiance);
+        let estimate = match &self.kind {
+            Kind::Point { position } => {
+                let to = *position - receiver.p;
+                let squared = to.length_squared().max(f64::MIN_POSITIVE);
+                strength / squared * cosine_bound(receiver, to / squared.sqrt(), 0.0)
+            }
+            Kind::Sun { direction, sine } => {
+                let solid_angle = if *sine > 0.0 { PI * sine * sine } else { 1.0 };
+                strength * solid_angle * cosine_bound(receiver, *direction, *sine)
+            }
+            Kind::Sky => strength * PI,
+            Kind::Sphere { center, radius, .. } => {
+                let to = *center - receiver.p;
+                let squared = to.length_squared();
+                let sine_squared = radius * radius / squared;
+                if sine_squared >= 1.0 {
+                    return 0.0;
+                }
+                let bound = cosine_bound(receiver, to / squared.sqrt(), sine_squared.sqrt());
+                strength * PI * sine_squared * bound
+            }
+            Kind::Quadric(glowing) => {
+                let squared = glowing.center.distance_squared(receiver.p);
+                strength * glowing.area / squared.max(glowing.extent_squared)
+            }
+        };
+        // Finite even for a light in the very point.
+        estimate.min(1e200)
+    }
+
+    /// Draws a direction towards it, none if it cannot be seen from there.
+    pub fn sample(&self, receiver: &Receiver, part: f64, u: [f64; 2]) -> Option<LightSample> {
+        let delta = |wi: DVec3, distance: f64, radiance: Rgb| LightSample {
+            wi,
+            distance,
+            radiance,
+            pdf: 1.0,
+            delta: true,
+            target: None,
+        };
+        let beyond = |wi: DVec3, pdf: f64| LightSample {
+            wi,
+            distance: f64::INFINITY,
+            radiance: self.radiance,
+            pdf,
+            delta: false,
+            target: None,
+        };
+        match &self.kind {
+            Kind::Point { position } => {
+                let to = *position - receiver.p;
+                let squared = to.length_squared();
+                let distance = squared.sqrt();
+                (squared > 0.0).then(|| delta(to / distance, distance, self.radiance / squared))
+            }
+            Kind::Sun { direction, sine } if *sine == 0.0 => {
+                Some(delta(*direction, f64::INFINITY, self.radiance))
+            }
+            Kind::Sun { direction, sine } => {
+                let height = cone_height(*sine);
+                Some(beyond(towards(*direction, warp::cone(u, height)), warp::cone_pdf(height)))
+            }
+            Kind::Sky => Some(match receiver.n {
+                Some(n) => {
+                    let local = warp::cosine(u);
+                    beyond(towards(n, local), warp::cosine_pdf(local.z))
+                }
+                None => beyond(warp::sphere(u), warp::SPHERE_PDF),
+            }),
+            Kind::Sphere { id, center, radius } => {
+                let to = *center - receiver.p;
+                let d = to.length();
+                let sine = radius / d;
+                if sine >= 1.0 {
+                    return None;
+                }
+                let height = cone_height(sine);
+                let local = warp::cone(u, height);
+                let wi = towards(to / d, local);
+                let sine_squared = local.x * local.x + local.y * local.y;
+                let half_chord = (radius * radius - d * d * sine_squared).max(0.0).sqrt();
+                let distance = (d - radius) * (d + radius) / (d * local.z + half_chord);
+                let place = Place { primitive: *id, face: Face::Side };
+                let target = Target { p: receiver.p + distance * wi, place, hides_itself: false };
+                Some(LightSample {
+                    wi,
+                    distance,
+                    radiance: self.radiance,
+                    pdf: warp::cone_pdf(height),
+                    delta: false,
+                    target: Some(target),
+                })
+            }
+            Kind::Quadric(glowing) => glowing.sample(receiver, part, u, self.radiance),
+        }
+    }
+
+    /// Density of [`Lamp::sample`] in solid angle.
+    fn pdf(&self, receiver: &Receiver, wi: DVec3, point: Option<(&SurfacePoint, Face)>) -> f64 {
+        match &self.kind {
+            Kind::Point { .. } => 0.0,
+            Kind::Sun { sine, .. } if *sine == 0.0 => 0.0,
+            Kind::Sun { sine, .. } => warp::cone_pdf(cone_height(*sine)),
+            Kind::Sky => receiver.n.map_or(warp::SPHERE_PDF, |n| warp::cosine_pdf(n.dot(wi))),
+            Kind::Sphere { center, radius, .. } => {
+                let sine = radius / center.distance(receiver.p);
+                if sine < 1.0 { warp::cone_pdf(cone_height(sine)) } else { 0.0 }
+            }
+            Kind::Quadric(glowing) => {
+                point.map_or(0.0, |(point, face)| glowing.pdf(receiver.p, wi, point, face))
+            }
+        }
+    }
+
+    fn is_seen_beyond(&self, w: DVec3) -> bool {
+        match &self.kind {
+            Kind::Sky => true,
+            // By the sine, which is exact for a small disc.
+            Kind::Sun { direction, sine } => {
+                *sine > 0.0 && direction.dot(w) > 0.0 && direction.cross(w).length_squared() <= sine * sine
+            }
+            _ => false,
+        }
+    }
+}
+
+impl GlowingQuadric {
+    fn new(id: PrimitiveId, quadric: &Quadric, shape: &Shape) -> Option<GlowingQuadric> {
+        let bounds = shape.bounds()?;
+        let [low_cap, high_cap] = quadric.cap_areas();
+        let [below, above] = quadric.stretches();
+        let mut parts: Vec<Part> = [
+            (Face::Side, below, quadric.side_area(below[0], below[1])),
+            (Face::Side, above, quadric.side_area(above[0], above[1])),
+            (Face::Low, [quadric.low; 2], low_cap),
+            (Face::High, [quadric.high; 2], high_cap),
+        ]
+        .into_iter()
+        .filter(|(_, _, area)| *area > 0.0)
+        .map(|(face, stretch, area)| Part { face, stretch, share: 0.0, area })
+        .collect();
+        let area: f64 = parts.iter().map(|part| part.area).sum();
+        parts.iter_mut().for_each(|part| part.share = part.area / area);
+        let extent_squared = 0.25 * bounds.size().length_squared();
+        let sampled = area > 0.0 && area < f64::INFINITY;
+        sampled.then(|| GlowingQuadric {
+            id,
+            quadric: *quadric,
+            area,
+            center: bounds.center(),
+            extent_squared,
+            parts,
+        })
+    }
+
+    /// A point by area: the part by its share, within the side uniform in y and angle.
+    fn sample(&self, receiver: &Receiver, part: f64, u: [f64; 2], radiance: Rgb) -> Option<LightSample> {
+        let mut rest = part;
+        let part = self.parts.iter().find(|part| {
+            let here = rest < part.share;
+            rest -= part.share;
+            here
+        });
+        let part = part.or(self.parts.last())?;
+        let object = match part.face {
+            Face::Side => {
+                let [low, high] = part.stretch;
+                self.quadric.side_point(low + u[0] * (high - low), 2.0 * PI * u[1])
+            }
+            Face::Low | Face::High => {
+                let y = part.stretch[0];
+                let p = self.quadric.form.radius_squared(y).sqrt() * warp::disc(u);
+                DVec3::new(p.x, y, p.y)
+            }
+        };
+        let p = self.quadric.world_from_object.transform_point3(object);
+        let gradient = match part.face {
+            Face::Side => self.quadric.form.half_gradient(object),
+            Face::Low => DVec3::NEG_Y,
+            Face::High => DVec3::Y,
+        };
+        let n = (self.quadric.object_from_world.matrix3.transpose() * gradient).normalize();
+        let to = p - receiver.p;
+        let distance = to.length();
+        let wi = to / distance;
+        let facing = -n.dot(wi);
+        let glows = if self.quadric.is_closed() { facing > 0.0 } else { facing != 0.0 };
+        let pdf = self.pdf(receiver.p, wi, &SurfacePoint { p, n }, part.face);
+        let place = Place { primitive: self.id, face: part.face };
+        (glows && pdf > 0.0 && pdf < f64::INFINITY).then_some(LightSample {
+            wi,
+            distance,
+            radiance,
+            pdf,
+            delta: false,
+            target: Some(Target { p, place, hides_itself: true }),
+        })
+    }
+
+    fn pdf(&self, from: DVec3, wi: DVec3, point: &SurfacePoint, face: Face) -> f64 {
+        let object = self.quadric.object_from_world.transform_point3(point.p);
+        let part = self.parts.iter().find(|part| {
+            part.face == face
+                && (face != Face::Side || self.parts_side(object.y) == self.parts_side(part.stretch[0]))
+        });
+        let Some(part) = part else { return 0.0 };
+        let by_area = match face {
+            Face::Side => {
+                let [low, high] = part.stretch;
+                part.share / ((high - low) * 2.0 * PI * self.quadric.side_density(object))
+            }
+            Face::Low | Face::High => 1.0 / self.area,
+        };
+        by_area * point.p.distance_squared(from) / point.n.dot(wi).abs()
+    }
+
+    /// Which of the sheets a height belongs to, where there are two.
+    fn parts_side(&self, y: f64) -> bool {
+        self.quadric.form == crate::scene::shape::Form::TwoSheet && y < 0.0
+    }
+}
+
+/// 1 − cosine of the half angle of a cone by its sine, exact for narrow ones.
+fn cone_height(sine: f64) -> f64 {
+    let squared = sine * sine;
+    squared / (1.0 + (1.0 - squared).max(0.0).sqrt())
+}
+
+/// The greatest cosine to the normal of any direction in the cone about `w` of this half angle; 1 without normal.
+fn cosine_bound(receiver: &Receiver, w: DVec3, sine: f64) -> f64 {
+    let Some(n) = receiver.n else { return 1.0 };
+    let c = n.dot(w);
+    let cosine = (1.0 - sine * sine).max(0.0).sqrt();
+    if c >= cosine { 1.0 } else { (c * cosine + (1.0 - c * c).max(0.0).sqrt() * sine).max(0.0) }
+}
+
+/// A direction of the local frame about the unit vector `z`, in the world.
+fn towards(z: DVec3, local: DVec3) -> DVec3 {
+    let (x, y) = basis(z);
+    local.x * x + local.y * y + local.z * z
+}

@@ -1,0 +1,76 @@
+//! A first look at the scene, from which exposure and the film's scale follow.
+//!
+//! It depends on nothing but what the picture shows: not on its size, window, seed or samples.
+
+use super::integrator::Scratch;
+use super::sampler::Sampler;
+use super::{Tracer, film, integrator};
+use crate::color::{Rgb, luminance};
+use crate::math::{DVec2, exp, ln};
+use rayon::prelude::*;
+use std::f64::consts::LN_2;
+
+/// What the first look found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prepass {
+    /// The exposure in stops that shows the scene neither dark nor blown out.
+    pub exposure_stops: f64,
+    /// Fixed-point units in radiance 1: the film's scale, a power of two.
+    pub scale: f64,
+}
+
+/// Cells across and down, and paths in each.
+const CELLS: u32 = 32;
+const PATHS: u32 = 4;
+const SEED: u64 = 0x7072_6570_6173_7321;
+
+/// Radiance that shows as a middle grey.
+const MIDDLE: f64 = 0.18;
+/// Radiance that the brightest twentieth of the picture begins at.
+const BRIGHT: f64 = 0.9;
+
+pub(super) fn prepass(tracer: &Tracer) -> Prepass {
+    let mut cells: Vec<f64> =
+        (0..CELLS * CELLS).into_par_iter().map(|cell| luminance(cell_mean(tracer, cell))).collect();
+    cells.sort_unstable_by(f64::total_cmp);
+    let typical = log_mean(&cells);
+    let bright = cells[cells.len() * 95 / 100].max(typical);
+    Prepass { exposure_stops: exposure(typical, bright), scale: film::scale_for(typical, tracer.peak()) }
+}
+
+fn cell_mean(tracer: &Tracer, cell: u32) -> Rgb {
+    let (x, y) = (cell % CELLS, cell / CELLS);
+    let mut scratch = Scratch::default();
+    let sum: Rgb = (0..PATHS)
+        .map(|path| {
+            let sampler = Sampler::new(SEED, x, y, path);
+            let [u, v] = sampler.pair(super::sampler::Pair::Film);
+            let place = DVec2::new(f64::from(x) + u, f64::from(y) + v) / f64::from(CELLS);
+            let ray = tracer.eye.through(2.0 * place - 1.0, &sampler);
+            integrator::radiance(tracer, ray, &sampler, &mut scratch, &mut ())
+        })
+        .sum();
+    sum / f64::from(PATHS)
+}
+
+/// The geometric mean of what is not black, each raised to a thousandth of the mean at least: noise in the
+/// shadows must not count.
+fn log_mean(sorted: &[f64]) -> f64 {
+    let lit: Vec<f64> = sorted.iter().copied().filter(|v| *v > 0.0).collect();
+    let count = lit.len().max(1) as f64;
+    let mean = lit.iter().map(|v| v / count).sum::<f64>();
+    if mean == 0.0 {
+        return 0.0;
+    }
+    exp(lit.iter().map(|v| ln(v.max(1e-3 * mean)) / count).sum())
+}
+
+/// Halfway, in stops, between what makes the typical a middle grey and what keeps the bright below white.
+fn exposure(typical: f64, bright: f64) -> f64 {
+    if typical == 0.0 {
+        return 0.0;
+    }
+    let stops = 0.5 * (ln(MIDDLE / typical) + ln(BRIGHT / bright)) / LN_2;
+    // To a hundredth, so that it can be pinned as it is printed.
+    ((stops * 100.0).round() / 100.0).clamp(-100.0, 100.0)
+}

@@ -1,0 +1,26 @@
+//! Spheres.
+
+use super::Ray;
+use crate::math::DVec3;
+
+/// The least distance above 0. With o = origin − centre and b = −o·d it solves t² − 2bt + o·o − r² = 0. The
+/// discriminant is taken from the offset of the ray from the centre, which does not cancel for a small sphere
+/// far away (Haines et al., *Ray Tracing Gems* ch. 7), and the smaller root from the product of the two.
+pub(super) fn intersect(center: DVec3, radius: f64, ray: &Ray, on_it: bool) -> Option<f64> {
+    let o = ray.origin - center;
+    let b = -o.dot(ray.direction);
+    if on_it {
+        return (b > 0.0).then_some(2.0 * b);
+    }
+    let offset = o + b * ray.direction;
+    let discriminant = radius * radius - offset.length_squared();
+    if discriminant < 0.0 {
+        return None;
+    }
+    let product = o.length_squared() - radius * radius;
+    let larger = b + discriminant.sqrt().copysign(b);
+    let smaller = product / larger;
+    let (near, far) = if b < 0.0 { (larger, smaller) } else { (smaller, larger) };
+    let t = if near > 0.0 { near } else { far };
+    (t > 0.0).then_some(t)
+}

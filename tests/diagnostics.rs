@@ -1,0 +1,56 @@
+//! Every slip, and what is said of it: `cases/diagnostics/*.rt`, with what a terminal shows beside them.
+//!
+//! A case is named after the code it is about, which is then the only one it gives.
+
+use rt_lang::diagnostic::Code;
+use rt_lang::lower::Overrides;
+use rt_lang::report::{self, Style};
+use rt_lang::source::{Source, Sources};
+use rt_lang::compile;
+use std::collections::BTreeSet;
+
+#[test]
+fn slips_are_reported() {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.set_snapshot_path("cases/diagnostics");
+    settings.bind(|| {
+        insta::glob!("cases/diagnostics/*.rt", |path| {
+            let name = path.file_name().unwrap().to_str().unwrap();
+            let text = std::fs::read_to_string(path).unwrap();
+            let mut sources = Sources::default();
+            let id = sources.add(Source::new(name, text));
+            let compiled = compile(&sources, id, &Overrides::default());
+            let codes: BTreeSet<&str> = compiled.diagnostics.iter().map(|d| d.code.as_str()).collect();
+            if let Some(code) = name.split('-').next().filter(|word| Code::ALL.iter().any(|c| c.as_str() == *word)) {
+                assert_eq!(codes, BTreeSet::from([code]), "{name}: {:#?}", compiled.diagnostics);
+            } else if name.starts_with("fine") {
+                assert!(codes.is_empty(), "{name}: {:#?}", compiled.diagnostics);
+            }
+            let style = Style { color: false, unicode: true, width: 100 };
+            let mut shown = report::all(&compiled.diagnostics, &sources, style);
+            for note in &compiled.notes {
+                shown.push_str(&format!("note: {note}\n"));
+            }
+            insta::assert_snapshot!("report", shown);
+        });
+    });
+}
+
+/// Each code the compiler can give has a case, here or among those of the syntax. E0009 and a file too large
+/// are found before there is a text; the noise target is judged by the renderer: the command's tests hold them.
+#[test]
+fn every_code_has_a_case() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases");
+    let names: Vec<String> = ["diagnostics", "syntax"]
+        .iter()
+        .flat_map(|folder| std::fs::read_dir(root.join(folder)).unwrap())
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap().to_lowercase())
+        .collect();
+    for code in Code::ALL {
+        let elsewhere = matches!(code, Code::E0009 | Code::W0701);
+        let code = code.as_str().to_lowercase();
+        assert!(elsewhere || names.iter().any(|name| name.contains(&code)), "no case for {code}");
+    }
+}
