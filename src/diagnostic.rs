@@ -118,7 +118,15 @@ impl Diagnostic {
     /// A diagnostic at a place, with nothing further said.
     pub fn new(code: Code, message: impl Into<String>, span: Span) -> Diagnostic {
         let primary = Label { span, text: String::new() };
-        Diagnostic { code, message: message.into(), primary, labels: vec![], help: None, fix: None, uses: vec![] }
+        Diagnostic {
+            code,
+            message: message.into(),
+            primary,
+            labels: vec![],
+            help: None,
+            fix: None,
+            uses: vec![],
+        }
     }
 
     /// Says something of the primary place.
@@ -130,7 +138,9 @@ impl Diagnostic {
     /// Points at a further place; one that overlaps an earlier label is left out.
     pub fn label(mut self, span: Span, text: impl Into<String>) -> Diagnostic {
         let overlaps = |other: Span| {
-            other.source == span.source && other.start < span.end.max(span.start + 1) && span.start < other.end
+            other.source == span.source
+                && other.start < span.end.max(span.start + 1)
+                && span.start < other.end
         };
         if !overlaps(self.primary.span) && !self.labels.iter().any(|label| overlaps(label.span)) {
             self.labels.push(Label { span, text: text.into() });

@@ -22,13 +22,13 @@
 //! | [`output`] | film to the bytes of image files, and back | files |
 //! | [`report`] | diagnostics to text for a person | what they are about |
 
-pub mod span;
-pub mod source;
+pub mod color;
+pub mod develop;
 pub mod diagnostic;
 pub mod math;
-pub mod color;
-pub mod units;
-pub mod schema;
-pub mod develop;
-pub mod syntax;
 pub mod scene;
+pub mod schema;
+pub mod source;
+pub mod span;
+pub mod syntax;
+pub mod units;

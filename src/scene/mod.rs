@@ -12,9 +12,9 @@
 
 pub mod shape;
 
-pub use crate::schema::{Filter, Tonemap};
 use crate::color::Rgb;
 use crate::math::{DVec2, DVec3};
+pub use crate::schema::{Filter, Tonemap};
 use serde::Serialize;
 pub use shape::Shape;
 

@@ -209,7 +209,11 @@ impl Quadric {
         let unit = m.x_axis.cross(m.z_axis).length();
         [self.low, self.high].map(|y| {
             let radius_squared = self.form.radius_squared(y);
-            if self.capped && y.is_finite() && radius_squared > 0.0 { PI * radius_squared * unit } else { 0.0 }
+            if self.capped && y.is_finite() && radius_squared > 0.0 {
+                PI * radius_squared * unit
+            } else {
+                0.0
+            }
         })
     }
 
@@ -286,14 +290,7 @@ mod tests {
     use super::*;
 
     fn quadric(form: Form, low: f64, high: f64, map: DAffine3) -> Quadric {
-        Quadric {
-            form,
-            world_from_object: map,
-            object_from_world: map.inverse(),
-            low,
-            high,
-            capped: true,
-        }
+        Quadric { form, world_from_object: map, object_from_world: map.inverse(), low, high, capped: true }
     }
 
     #[test]

@@ -235,7 +235,21 @@ impl BinaryOp {
     /// Every operator, from the loosest to the tightest.
     pub const ALL: &'static [BinaryOp] = {
         use BinaryOp::*;
-        &[Pipe, Or, And, Equal, NotEqual, Less, LessEqual, Greater, GreaterEqual, Add, Subtract, Multiply, Divide]
+        &[
+            Pipe,
+            Or,
+            And,
+            Equal,
+            NotEqual,
+            Less,
+            LessEqual,
+            Greater,
+            GreaterEqual,
+            Add,
+            Subtract,
+            Multiply,
+            Divide,
+        ]
     };
 
     /// As written.
