@@ -33,7 +33,7 @@ impl Dump<'_> {
         let covered = shorten(&self.text[span.range()]);
         // A tree of hundreds of levels would be all white space.
         let indent = "  ".repeat(self.indent.min(12));
-        writeln!(self.out, "{indent}{what}  «{covered}»").unwrap();
+        writeln!(self.out, "{indent}{what}  «{covered}»").expect("a string takes any text");
     }
 
     fn inside(&mut self, f: impl FnOnce(&mut Self)) {
@@ -77,6 +77,7 @@ impl Dump<'_> {
     }
 
     fn expr(&mut self, before: &str, expr: &Expr) {
+        let text = self.text;
         let mut line = |what: String| self.line(&format!("{before}{what}"), expr.span);
         match &expr.kind {
             ExprKind::Invalid => line("invalid".into()),
@@ -84,7 +85,7 @@ impl Dump<'_> {
             ExprKind::Number { value, int: false } => line(format!("number {value}")),
             ExprKind::Quantity { value, unit } => line(format!("quantity {value} {}", unit.text)),
             ExprKind::Bool(value) => line(format!("bool {value}")),
-            ExprKind::Text(text) => line(format!("text {text:?}")),
+            ExprKind::Text(value) => line(format!("text {value:?}")),
             ExprKind::Color(digits) => line(format!("color {digits}")),
             ExprKind::Name(name) => line(format!("name {name}")),
             ExprKind::Scaled { value, unit } => {
@@ -119,7 +120,7 @@ impl Dump<'_> {
                 self.inside(|dump| dump.expr("", operand));
             }
             ExprKind::Binary { operator, at, left, right } => {
-                line(format!("{operator:?} {}", &self.text[at.range()]));
+                line(format!("{operator:?} {}", &text[at.range()]));
                 self.inside(|dump| {
                     dump.expr("", left);
                     dump.expr("", right);
@@ -152,15 +153,17 @@ pub fn diagnostics(text: &str, diagnostics: &[Diagnostic]) -> String {
     let mut out = String::new();
     for diagnostic in diagnostics {
         let Diagnostic { code, message, primary, labels, help, fix, .. } = diagnostic;
-        writeln!(out, "{} {} × {message}", code.as_str(), place(text, primary.span.start)).unwrap();
+        writeln!(out, "{} {} × {message}", code.as_str(), place(text, primary.span.start))
+            .expect("a string takes any text");
         write_label(&mut out, text, "at ", primary);
         labels.iter().for_each(|label| write_label(&mut out, text, "and", label));
         if let Some(help) = help {
-            writeln!(out, "  help: {help}").unwrap();
+            writeln!(out, "  help: {help}").expect("a string takes any text");
         }
         for (span, replacement) in fix.iter().flat_map(|fix| &fix.edits) {
             let covered = shorten(&text[span.range()]);
-            writeln!(out, "  fix: {} «{covered}» → «{replacement}»", place(text, span.start)).unwrap();
+            writeln!(out, "  fix: {} «{covered}» → «{replacement}»", place(text, span.start))
+                .expect("a string takes any text");
         }
     }
     out
@@ -168,7 +171,8 @@ pub fn diagnostics(text: &str, diagnostics: &[Diagnostic]) -> String {
 
 fn write_label(out: &mut String, text: &str, word: &str, label: &Label) {
     let covered = shorten(&text[label.span.range()]);
-    writeln!(out, "  {word} {} «{covered}» {}", place(text, label.span.start), label.text).unwrap();
+    writeln!(out, "  {word} {} «{covered}» {}", place(text, label.span.start), label.text)
+        .expect("a string takes any text");
 }
 
 fn place(text: &str, offset: u32) -> String {

@@ -79,6 +79,7 @@ fn value_of(source: SourceId, item: &Item) -> (Expr, Sink) {
                 for pair in pairs {
                     match pair.as_rule() {
                         Rule::expr => expr = value::expression(&builder, pair).0,
+                        Rule::extra_all if matches!(expr.kind, ExprKind::Invalid) => {}
                         Rule::extra_all => builder.unexpected(&pair, errors::unexpected_behind),
                         _ => {}
                     }
@@ -108,11 +109,23 @@ fn on_enough_stack<T: Send>(item: &Item, read: impl FnOnce() -> T + Send) -> T {
     })
 }
 
+fn value_in(entry: &Entry) -> Option<&ExprKind> {
+    match entry {
+        Entry::Field(field) => Some(&field.value.kind),
+        Entry::Statement(statement) => match statement.as_ref() {
+            Statement::Definition { value, .. } => Some(&value.kind),
+            Statement::Thing { .. } => None,
+        },
+        Entry::Broken(_) => None,
+    }
+}
+
 /// Builds the tree of one item.
 pub(super) struct Builder<'t> {
     source: SourceId,
     text: &'t str,
     base: usize,
+    continued: bool,
     sink: RefCell<Sink>,
     /// Whether the depth of an expression was complained of; once an item is enough.
     deep: Cell<bool>,
@@ -121,7 +134,7 @@ pub(super) struct Builder<'t> {
 impl<'t> Builder<'t> {
     fn new(source: SourceId, item: &'t Item) -> Builder<'t> {
         let (sink, deep) = (RefCell::new(Sink::new()), Cell::new(false));
-        Builder { source, text: &item.text, base: item.start, sink, deep }
+        Builder { source, text: &item.text, base: item.start, continued: item.continued, sink, deep }
     }
 
     pub(super) fn report(&self, diagnostic: crate::diagnostic::Diagnostic) {
@@ -190,20 +203,25 @@ impl<'t> Builder<'t> {
     /// Entries, and the slips with which some of them end.
     fn entries(&self, pairs: Pairs<'t, Rule>, top: bool) -> Deep<Vec<Entry>> {
         let (mut entries, mut deepest) = (vec![], 0);
-        // Whether the last entry was complained of as a whole, which explains what follows on its line.
-        let mut explained = false;
+        // Whether a complaint about the last entry, or about its value, explains what follows on its line.
+        let (mut explained, mut explained_value) = (false, false);
+        let mut muted = None;
         for pair in pairs {
             match pair.as_rule() {
                 Rule::semicolon => self.semicolon(&pair),
-                Rule::crowded if explained => {}
+                Rule::crowded if explained => muted = Some(self.sink.borrow().len()),
                 Rule::crowded => self.crowded(&pair),
-                Rule::extra if explained => {}
+                Rule::extra if explained || explained_value => {}
                 Rule::extra => self.unexpected(&pair, errors::unexpected_extra),
                 Rule::stray => self.stray(&pair),
                 Rule::EOI => {}
                 _ => {
                     let (entry, depth) = self.entry(pair, top);
+                    if let Some(length) = muted.take() {
+                        self.sink.borrow_mut().truncate(length);
+                    }
                     explained = matches!(entry, Entry::Broken(_));
+                    explained_value = matches!(value_in(&entry), Some(ExprKind::Invalid));
                     deepest = deepest.max(depth);
                     entries.push(entry);
                 }
@@ -354,7 +372,7 @@ impl<'t> Builder<'t> {
     fn uncoloned(&self, word: &Node, mut inner: Pairs<'t, Rule>, span: Span, top: bool) -> Deep<Entry> {
         let name = self.name(word);
         let value = inner.next().expect("this slip has a value");
-        let value_span = self.span(&value);
+        let value_span = self.at(value.as_span().start(), self.before(value.as_span().end()).len());
         let field = &name.text == "material" && !top;
         if is_reserved(&name.text) && !field {
             self.report(errors::reserved(&name.text, name.span));
@@ -387,7 +405,8 @@ impl<'t> Builder<'t> {
     /// `;` where a comma or nothing should stand.
     pub(super) fn semicolon(&self, pair: &Node) {
         let rest = self.text[pair.as_span().end()..].trim_start_matches([' ', '\t', '\r']);
-        let replacement = if rest.is_empty() || rest.starts_with(['\n', '}', ',']) { "" } else { "," };
+        let ends = if rest.is_empty() { !self.continued } else { rest.starts_with(['\n', '}', ',', ')']) };
+        let replacement = if ends { "" } else { "," };
         self.report(errors::semicolon(self.span(pair), replacement));
     }
 
@@ -403,7 +422,7 @@ impl<'t> Builder<'t> {
     fn stray(&self, pair: &Node) {
         let span = self.span(pair);
         match pair.as_str() {
-            ";" => self.semicolon(pair),
+            ";" => self.report(errors::semicolon(span, "")),
             sign => self.report(errors::stray_separator(span, sign)),
         }
     }

@@ -47,6 +47,8 @@ pub(super) struct Item<'t> {
     pub(super) text: Cow<'t, str>,
     /// Whether it goes over a limit, which was reported: not to be parsed.
     pub(super) skipped: bool,
+    /// Whether it ends with `;` and the line goes on.
+    pub(super) continued: bool,
     /// How deep its brackets are nested, at least.
     pub(super) depth: usize,
 }
@@ -86,13 +88,27 @@ struct Level {
     commas: usize,
     /// Whether a `<` stands where a value should: the slip `<x, y, z>` is open.
     angled: bool,
+    /// Whether it holds the arguments of a function.
+    call: bool,
+    /// Whether a line ends behind the bracket: what it holds stands below it.
+    spread: bool,
     /// Closers to overlook, since their openers were reported as unclosed.
     forgiven: usize,
 }
 
 impl Level {
     fn new(bracket: u8, at: usize, indent: usize) -> Level {
-        Level { bracket, at, indent, operators: 0, commas: 0, angled: false, forgiven: 0 }
+        Level {
+            bracket,
+            at,
+            indent,
+            operators: 0,
+            commas: 0,
+            angled: false,
+            call: false,
+            spread: false,
+            forgiven: 0,
+        }
     }
 }
 
@@ -261,7 +277,10 @@ impl<'t> Cutter<'t> {
         if self.layout && !self.levels.is_empty() && self.indent == 0 && self.begins_item() {
             return self.close_all(Some(self.word_span()));
         }
-        if matches!(self.innermost(), b'(' | b'[') && self.last == Last::Operand && self.begins_entry() {
+        let end = self.end;
+        let level = self.level();
+        level.spread |= level.at + 1 == end;
+        if self.shows_unclosed_parenthesis() {
             self.close_parentheses(gap);
             if self.levels.is_empty() {
                 return self.close_all(None);
@@ -295,7 +314,7 @@ impl<'t> Cutter<'t> {
             return true;
         }
         match self.last {
-            Last::Operator | Last::Definer => !self.begins_field(),
+            Last::Operator | Last::Definer => !self.begins_field() && !self.begins_definition(),
             Last::Operand | Last::Open => match (self.byte(self.at), self.byte(self.at + 1)) {
                 (b'+' | b'*' | b'/' | b'<' | b'>' | b'{', _) => true,
                 (b'|', b'>') | (b'=' | b'!', b'=') => true,
@@ -331,19 +350,31 @@ impl<'t> Cutter<'t> {
         self.word_and_next(self.at).is_some_and(|(_, next)| self.byte(next) == b':')
     }
 
+    /// `let name` or `material name`
+    fn begins_definition(&self) -> bool {
+        let named = |next| self.word_and_next(next).is_some_and(|(name, _)| !matches!(name, "and" | "or"));
+        self.word_and_next(self.at)
+            .is_some_and(|(word, next)| matches!(word, "let" | "material") && named(next))
+    }
+
     /// `kind {`, `kind name {`, `name =` or `let name`
     fn begins_item(&self) -> bool {
         let Some((word, next)) = self.word_and_next(self.at) else { return false };
         let opens = |at| matches!(self.byte(at), b'{' | b'=') && self.byte(at + 1) != b'=';
         match self.word_and_next(next) {
-            Some((_, after)) => matches!(word, "let" | "material") || opens(after),
-            None => opens(next),
+            Some((_, after)) => self.begins_definition() || opens(after),
+            None => opens(next) && !matches!(word, "and" | "or"),
         }
     }
 
-    /// What can stand in a body and never inside parentheses behind a whole value.
-    fn begins_entry(&self) -> bool {
-        self.begins_field() || self.begins_item()
+    /// Whether the line begins what can stand in a body and not in the parentheses around it.
+    fn shows_unclosed_parenthesis(&self) -> bool {
+        let Some(level) = self.levels.last().filter(|level| level.bracket != b'{') else { return false };
+        match self.last {
+            Last::Operand => self.begins_item() || (self.begins_field() && !level.spread),
+            Last::Open => self.end > level.at + 1 && self.begins_field() && !level.call,
+            Last::Operator | Last::Definer => false,
+        }
     }
 
     // --- Tokens ---------------------------------------------------------------------------------------------
@@ -502,7 +533,8 @@ impl<'t> Cutter<'t> {
             self.beyond += 1;
         } else {
             self.open[index(byte)] += 1;
-            self.levels.push(Level::new(byte, self.at, self.indent));
+            let call = self.last == Last::Operand;
+            self.levels.push(Level { call, ..Level::new(byte, self.at, self.indent) });
             self.depth = self.depth.max(self.levels.len());
         }
         self.take(1, Last::Open)
@@ -530,7 +562,8 @@ impl<'t> Cutter<'t> {
                 self.close_above(matching.map_or(0, |index| index + 1), Some(place));
                 self.pop(1);
             }
-            Some(level) if level.bracket != b'{' && closer != b'}' => {
+            // Where braces are known not to match, this one was meant.
+            Some(level) if closer != b'}' && (level.bracket != b'{' || self.layout) => {
                 let right = closer_of(level.bracket);
                 let opened = self.span(level.at, level.at + 1);
                 self.out.sink.push(errors::wrong_closer(
@@ -667,11 +700,26 @@ impl<'t> Cutter<'t> {
         let text = &self.text[start..self.end];
         let text = if self.edits.is_empty() { Cow::Borrowed(text) } else { Cow::Owned(self.edited(start)) };
         self.edits.clear();
-        self.out.items.push(Item { start, text, skipped: self.skipped, depth: self.depth });
+        self.out.items.push(Item {
+            start,
+            text,
+            skipped: self.skipped,
+            continued: self.continues(),
+            depth: self.depth,
+        });
         self.last = Last::Open;
         self.comma_allowed = true;
         let forgiven = self.base.forgiven;
         self.base = Level { forgiven, ..Level::new(0, 0, 0) };
+    }
+
+    /// Whether the item ends with `;` and the line goes on.
+    fn continues(&self) -> bool {
+        let rest = self.text[self.end..].trim_start_matches([' ', '\t', '\r']);
+        self.bytes[self.end - 1] == b';'
+            && !rest.is_empty()
+            && !rest.starts_with(['\n', ','])
+            && !rest.starts_with("//")
     }
 
     fn edited(&self, start: usize) -> String {

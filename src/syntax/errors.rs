@@ -73,6 +73,7 @@ pub(super) fn unexpected_value(token: &str, span: Span) -> Diagnostic {
         "'" | "“" | "”" | "‘" | "’" => {
             diagnostic.help("text stands in straight double quotes: `\"text\"`")
         }
+        "<" => diagnostic.help("values stand in parentheses: `(0, 1, 0)m`"),
         "+" => diagnostic.help("a positive number has no sign"),
         "!" => diagnostic.help("write `not`"),
         "=" => diagnostic.help("write one `=` or `:` and then the value"),
@@ -86,6 +87,7 @@ pub(super) fn unexpected_extra(token: &str, span: Span) -> Diagnostic {
     match token {
         "{" => diagnostic.help("only a kind is followed by a body: `sphere { … }` or `sphere ball { … }`"),
         "&" => diagnostic.help("write `and`"),
+        "°" => diagnostic.help("an angle is written `45deg`"),
         "|" => diagnostic.help("write `or`, or `|>` to pass a placement on"),
         "^" => diagnostic.help("write `pow(a, b)`, or `a * a` for a square"),
         "?" => diagnostic.help("a choice is written `if … then … else …`"),
@@ -199,6 +201,11 @@ pub(super) fn no_brace(kind: &str, span: Span, value: Span) -> Diagnostic {
 
 /// A name in a body, and nothing more.
 pub(super) fn lone_name(name: &str, span: Span) -> Diagnostic {
+    if name == "material" {
+        return Diagnostic::new(Code::E0001, "`material` has no value", span)
+            .at("`:` is missing behind this")
+            .help("write `material: …` for a field, or `material NAME = …` for a definition");
+    }
     Diagnostic::new(Code::E0001, format!("`{name}` has neither a value nor a body"), span)
         .at("`:` or `{` is missing behind this")
         .help(format!("write `{name}: …` for a field, or `{name} {{ … }}` for a thing"))
@@ -297,7 +304,7 @@ pub(super) fn colon_in_definition(keyword: &str, name: &str, sign: Span, edit: S
 /// `radius: 5cm;`
 pub(super) fn semicolon(span: Span, replacement: &str) -> Diagnostic {
     let help = match replacement {
-        "" => "delete it: the line end separates",
+        "" => "delete it",
         _ => "write a comma",
     };
     Diagnostic::new(Code::E0003, "`;` does not separate", span)

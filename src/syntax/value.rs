@@ -139,7 +139,7 @@ fn reference(builder: &Builder, pair: Node) -> Deep<Expr> {
     let span = builder.span(&pair);
     let mut inner = pair.into_inner();
     let word = inner.next().expect("a reference begins with a word");
-    let leaf = |kind| (Expr { kind, span }, 1);
+    let leaf = |kind| (Expr { kind, span: builder.span(&word) }, 1);
     match (word.as_str(), inner.next()) {
         ("true", None) => leaf(ExprKind::Bool(true)),
         ("false", None) => leaf(ExprKind::Bool(false)),
@@ -150,7 +150,7 @@ fn reference(builder: &Builder, pair: Node) -> Deep<Expr> {
                 Some(arguments) => drop(elements(builder, arguments)),
                 None => {}
             }
-            invalid(span)
+            invalid(builder.span(&word))
         }
         (name, None) => leaf(ExprKind::Name(SmolStr::new(name))),
         (_, Some(body)) if body.as_rule() == Rule::body => {
@@ -203,8 +203,10 @@ fn elements(builder: &Builder, pair: Node) -> Elements {
 
 /// `name:`, or the slip `name =`.
 fn label(builder: &Builder, pair: Node) -> Name {
-    let span = builder.span(&pair);
-    let equals = pair.as_str().ends_with('=');
+    let written = pair.as_str().trim_ascii_end();
+    let start = pair.as_span().start();
+    let span = builder.at(start, start + written.len());
+    let equals = written.ends_with('=');
     let name = builder.name(&pair.into_inner().next().expect("a label has a name"));
     if equals {
         let sign = Span { start: span.end - 1, ..span };
@@ -282,13 +284,13 @@ fn literal(builder: &Builder, pair: Node) -> ExprKind {
     }
 }
 
-/// Whether what looks like a unit is rather the rest of a number: `1e`, `0x10`.
+/// Whether what looks like a unit is rather the rest of a number: `0x10`.
 fn is_misread(number: &str, unit: &str) -> bool {
-    let rest = |letters: [char; 2]| unit.strip_prefix(letters);
-    let exponent = rest(['e', 'E']).is_some_and(|rest| rest.bytes().all(|b| b.is_ascii_digit()));
-    let hexadecimal = rest(['x', 'X']).is_some_and(|rest| rest.bytes().all(|b| b.is_ascii_hexdigit()));
-    let digits = rest(['b', 'o']).is_some_and(|rest| rest.bytes().all(|b| b.is_ascii_digit()));
-    exponent || (number == "0" && (hexadecimal || digits))
+    let hexadecimal = |rest: &str| rest.bytes().all(|b| b.is_ascii_hexdigit());
+    let digits = |rest: &str| rest.bytes().all(|b| b.is_ascii_digit());
+    number == "0"
+        && (unit.strip_prefix(['x', 'X']).is_some_and(hexadecimal)
+            || unit.strip_prefix(['b', 'o', 'B', 'O']).is_some_and(digits))
 }
 
 /// A unit, or the slip of a space before it.
