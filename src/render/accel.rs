@@ -39,10 +39,10 @@ struct Node {
 }
 
 /// Surfaces that a leaf may hold even if splitting it looks cheaper, and must not exceed if that looks dearer.
-const LEAF: std::ops::RangeInclusive<usize> = 2..=8;
+const LEAF: std::ops::RangeInclusive<usize> = 2..=16;
 const BINS: usize = 16;
 /// What stepping down one node costs in intersections.
-const STEP_COST: f64 = 1.0;
+const STEP_COST: f64 = 2.0;
 /// Below this depth nodes are halved by number, which bounds the depth by 32 more.
 const DEEPEST_SAH: usize = 32;
 const STACK: usize = 72;

@@ -33,6 +33,8 @@ pub mod observer;
 mod prepass;
 pub mod sampler;
 pub mod shape;
+#[cfg(test)]
+mod tests;
 mod warp;
 
 use crate::color::Rgb;

@@ -55,7 +55,7 @@ impl Sampler {
         // The odd constant is 2⁶⁴ over the golden ratio: it spreads successive pairs over all bits.
         let hash = mix(self.key ^ pair.index().wrapping_mul(0x9e37_79b9_7f4a_7c15));
         let scramble = mix(hash);
-        let index = owen(self.sample.reverse_bits(), hash as u32).reverse_bits();
+        let index = owen(self.sample, hash as u32);
         let x = owen(van_der_corput(index), scramble as u32);
         let y = owen(pascal(index), (scramble >> 32) as u32);
         [unit(x), unit(y)]
