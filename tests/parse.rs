@@ -91,6 +91,18 @@ fn expressions_stand_alone() {
     }
 }
 
+/// The grammar lists the units, since what follows `/` or a space depends on them.
+#[test]
+fn the_grammar_knows_every_unit() {
+    for (unit, _) in rt_lang::units::UNITS.iter().filter(|(unit, _)| *unit != "%") {
+        let text = format!("1W/{unit}");
+        let (expr, _) = parse_expression(SOURCE, &text);
+        assert!(matches!(expr.kind, ExprKind::Quantity { unit, .. } if unit.text == text[1..]), "{unit}");
+        let (_, diagnostics) = parse_expression(SOURCE, &format!("8 {unit}"));
+        assert_eq!(diagnostics[0].code, Code::E0004, "{unit}");
+    }
+}
+
 // --- Hostile texts -----------------------------------------------------------------------------------------
 
 /// Runs on a stack as small as a worker thread's, and says how long it took.
