@@ -117,6 +117,9 @@ const ANY: Range = Range { low: f64::NEG_INFINITY, high: f64::INFINITY, above: f
 const POSITIVE: Range = Range { low: 0.0, high: f64::INFINITY, above: true };
 const NOT_NEGATIVE: Range = Range { low: 0.0, high: f64::INFINITY, above: false };
 
+/// Of an angle of view: up to 179°.
+const VIEW: Range = Range { low: 0.0, high: 179.0 / 180.0 * std::f64::consts::PI, above: true };
+
 /// Of a reflectance: a surface that gives back more than it receives is refused.
 const REFLECTANCE: Range = within(0.0, 1.0);
 
@@ -535,7 +538,7 @@ kinds! {
         /// This direction is upright in the picture.
         UP "up": Vector = Value("(0, 1, 0)"), ANY;
         /// Angle of view across the width.
-        FOV "fov": Angle = Absent("40deg, or what the lens gives"), Range { low: 0.0, high: 3.14, above: true };
+        FOV "fov": Angle = Absent("40deg, or what the lens gives"), VIEW;
         /// In stops: 0 shows radiance 1 as white, 1 is twice as bright.
         EXPOSURE "exposure": Exposure = Value("auto"), within(-100.0, 100.0);
         /// Depth of field.

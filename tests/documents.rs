@@ -33,7 +33,10 @@ fn tables_of_the_reference_are_the_compilers_own() {
     if std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
         std::fs::write(&path, &fresh).unwrap();
     } else {
-        assert!(fresh == written, "docs/reference.md is stale: run `INSTA_UPDATE=always cargo test --test main documents`");
+        assert!(
+            fresh == written,
+            "docs/reference.md is stale: run `INSTA_UPDATE=always cargo test --test main documents`"
+        );
     }
 }
 
@@ -48,8 +51,11 @@ fn replace(text: &str, name: &str, table: &str) -> String {
 fn units_table() -> String {
     let mut table = String::from("| what | units |\n|---|---|\n");
     for dim in [units::LENGTH, units::ANGLE, units::POWER, units::TEMPERATURE, units::NONE] {
-        let names: Vec<String> =
-            units::UNITS.iter().filter(|(_, unit)| unit.dim == dim).map(|(name, _)| format!("`{name}`")).collect();
+        let names: Vec<String> = units::UNITS
+            .iter()
+            .filter(|(_, unit)| unit.dim == dim)
+            .map(|(name, _)| format!("`{name}`"))
+            .collect();
         let what = if dim == units::NONE { "a ratio".into() } else { dim.to_string() };
         writeln!(table, "| {what} | {} |", names.join(" ")).unwrap();
     }
@@ -88,7 +94,13 @@ fn kinds() -> String {
             Category::Group => "group",
             Category::Block => "block",
         };
-        writeln!(text, "### `{}`\n\n*{category}.* {}\n", kind.name, kind.doc.replace('\n', " ").replace("  ", " ")).unwrap();
+        writeln!(
+            text,
+            "### `{}`\n\n*{category}.* {}\n",
+            kind.name,
+            kind.doc.replace('\n', " ").replace("  ", " ")
+        )
+        .unwrap();
         let own = KindId(index as u8).get().fields;
         if !own.is_empty() {
             writeln!(text, "{}", fields_table(own.iter())).unwrap();

@@ -91,6 +91,18 @@ fn expressions_stand_alone() {
     }
 }
 
+/// The grammar lists the units, since what follows `/` or a space depends on them.
+#[test]
+fn the_grammar_knows_every_unit() {
+    for (unit, _) in rt_lang::units::UNITS.iter().filter(|(unit, _)| *unit != "%") {
+        let text = format!("1W/{unit}");
+        let (expr, _) = parse_expression(SOURCE, &text);
+        assert!(matches!(expr.kind, ExprKind::Quantity { unit, .. } if unit.text == text[1..]), "{unit}");
+        let (_, diagnostics) = parse_expression(SOURCE, &format!("8 {unit}"));
+        assert_eq!(diagnostics[0].code, Code::E0004, "{unit}");
+    }
+}
+
 // --- Hostile texts -----------------------------------------------------------------------------------------
 
 /// Runs on a stack as small as a worker thread's, and says how long it took.
@@ -201,23 +213,6 @@ fn time_is_in_proportion_to_the_text() {
         let time = |length: usize| on_small_stack(seed.repeat(length / seed.len())).0;
         let (short, long) = (time(100_000), time(400_000));
         assert!(long < short * 12 + Duration::from_millis(100), "{seed:?}: {short:?}, then {long:?}");
-    }
-}
-
-/// How fast a large text is read: `cargo test --test main rate -- --ignored --nocapture`
-#[test]
-#[allow(clippy::print_stdout)]
-#[ignore = "a measurement"]
-fn rate() {
-    let text: String = (0..100_000)
-        .map(|i| format!("sphere {{ at: ({}.5, {i}, -3.25)m, radius: {}mm }}\n", i % 1000, i % 7 + 1))
-        .collect();
-    for _ in 0..3 {
-        let start = Instant::now();
-        let (file, diagnostics) = read(&text);
-        let time = start.elapsed().as_secs_f64();
-        assert!(diagnostics.is_empty() && file.body.entries.len() == 100_000);
-        println!("{:.1} MB at {:.1} MB/s", text.len() as f64 / 1e6, text.len() as f64 / 1e6 / time);
     }
 }
 

@@ -20,7 +20,7 @@ fn pictures_are_the_same_to_the_bit() {
 #[test]
 fn examples_are_the_same_to_the_bit() {
     let stamp = Overrides { size: Some([96, 72]), samples: Some(8), ..Overrides::default() };
-    insta::glob!("../examples/**/*.rt", |path| check(path, "cases/examples", &stamp));
+    insta::glob!(env!("CARGO_MANIFEST_DIR"), "examples/**/*.rt", |path| check(path, "cases/examples", &stamp));
 }
 
 fn check(path: &Path, folder: &str, overrides: &Overrides) {
@@ -94,7 +94,11 @@ impl Decoded {
             std::fs::write(folder.join(format!("{}.difference.jpg", self.name)), file.into_inner()).unwrap();
             let worst = a.iter().zip(&b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
             let count = a.chunks(3).zip(b.chunks(3)).filter(|(a, b)| a != b).count();
-            println!("{}: {count} pixels differ, by at most {worst} of 255; see {}", self.name, folder.display());
+            println!(
+                "{}: {count} pixels differ, by at most {worst} of 255; see {}",
+                self.name,
+                folder.display()
+            );
         } else {
             println!("{}: {size:?} pixels were expected, {other:?} came", self.name);
         }

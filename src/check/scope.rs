@@ -146,6 +146,7 @@ impl Checker<'_> {
                     None => {
                         if let Some(diagnostic) = self.shadows(name) {
                             self.report(diagnostic);
+                            self.count_as_used(Some(name.text.clone()));
                             known.used = true;
                         }
                         scope.slots.insert(name.text.clone(), slot);
@@ -210,6 +211,13 @@ impl Checker<'_> {
         color::named(name).map(|color| (ExprKind::Color(color), Type::Color))
     }
 
+    /// A name that was probably meant is not unused as well: one slip is one message.
+    pub(super) fn count_as_used(&mut self, name: Option<SmolStr>) {
+        if let Some(name) = name {
+            self.lookup(&name);
+        }
+    }
+
     /// Names in scope that may stand for a value, for suggestions.
     pub(super) fn value_names(&self) -> Vec<&str> {
         let declared = self.scopes.iter().flat_map(|scope| scope.slots.keys().map(SmolStr::as_str));
@@ -241,8 +249,13 @@ impl Checker<'_> {
                 (super::Base::Invalid, None)
             }
             None => {
-                let diagnostic = errors::unknown(Code::E0101, "kind", name, &self.kind_names());
+                let (diagnostic, guess) = {
+                    let names = self.kind_names();
+                    let guess = errors::closest(&name.text, &names).map(SmolStr::new);
+                    (errors::unknown(Code::E0101, "kind", name, &names), guess)
+                };
                 self.report(diagnostic);
+                self.count_as_used(guess);
                 (super::Base::Invalid, None)
             }
         }

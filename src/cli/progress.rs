@@ -1,7 +1,7 @@
 //! How far a picture is, on a terminal's standard error.
 
-use rt_lang::render::Control;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use rt_lang::render::Control;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;

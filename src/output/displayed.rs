@@ -3,7 +3,7 @@
 use super::{CannotEncode, Depth, Picture};
 use crate::color::Rgb;
 use crate::develop::display;
-use crate::schema::Tonemap;
+use crate::scene::Tonemap;
 use image::ExtendedColorType;
 use rayon::prelude::*;
 

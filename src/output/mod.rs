@@ -10,7 +10,7 @@ mod linear;
 mod openexr;
 
 use crate::color::Rgb;
-use crate::schema::Tonemap;
+use crate::scene::Tonemap;
 use rayon::prelude::*;
 use std::fmt;
 

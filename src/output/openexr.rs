@@ -1,7 +1,7 @@
 //! OpenEXR: scene radiance in 32-bit floats, with how it came about in the attributes.
 
 use super::{CannotDecode, CannotEncode, Facts, MOST_PIXELS, Picture, finite};
-use crate::schema::Tonemap;
+use crate::scene::Tonemap;
 use exr::meta::MetaData;
 use exr::meta::attribute::{AttributeValue, Chromaticities, IntegerBounds, LineOrder, Text};
 use exr::meta::header::{ImageAttributes, LayerAttributes};

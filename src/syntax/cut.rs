@@ -9,6 +9,11 @@
 //! starts with a binary operator other than `-`, with `.member` or with `{`.
 
 use super::MAX_DEPTH;
+mod brackets;
+mod lines;
+#[cfg(test)]
+mod tests;
+
 use super::ast::Comment;
 use super::errors::{self, Sink};
 use crate::span::{SourceId, Span};
@@ -86,8 +91,8 @@ struct Level {
     operators: usize,
     /// Commas so far.
     commas: usize,
-    /// Whether a `<` stands where a value should: the slip `<x, y, z>` is open.
-    angled: bool,
+    /// How many `<` stand where a value should: the slip `<x, y, z>` is open.
+    angled: usize,
     /// Whether it holds the arguments of a function.
     call: bool,
     /// Whether a line ends behind the bracket: what it holds stands below it.
@@ -104,7 +109,7 @@ impl Level {
             indent,
             operators: 0,
             commas: 0,
-            angled: false,
+            angled: 0,
             call: false,
             spread: false,
             forgiven: 0,
@@ -214,169 +219,6 @@ impl<'t> Cutter<'t> {
         self.levels.last().map_or(0, |level| level.bracket)
     }
 
-    // --- Between tokens -------------------------------------------------------------------------------------
-
-    /// Skips white space and comments.
-    fn gap(&mut self) -> Gap {
-        let mut gap = Gap { start: self.at, end: self.at, first_newline: None, comment: false };
-        let mut line = None;
-        while let Some(&byte) = self.bytes.get(self.at) {
-            match byte {
-                b' ' | b'\t' | b'\r' => self.at += 1,
-                b'\n' => {
-                    gap.first_newline.get_or_insert(self.at);
-                    line = Some(self.at + 1);
-                    self.at += 1;
-                }
-                b'/' if matches!(self.byte(self.at + 1), b'/' | b'*') => {
-                    let start = self.at;
-                    self.at = self.comment_end();
-                    gap.comment = true;
-                    if let Some(index) = self.bytes[start..self.at].iter().position(|&b| b == b'\n') {
-                        gap.first_newline.get_or_insert(start + index);
-                    }
-                    let span = self.span(start, self.at);
-                    self.out.comments.push(Comment { span });
-                }
-                _ => break,
-            }
-        }
-        gap.end = self.at;
-        if let Some(line) = line {
-            self.indent = self.at - line;
-        }
-        gap
-    }
-
-    fn comment_end(&mut self) -> usize {
-        let rest = &self.text[self.at..];
-        if rest.starts_with("//") {
-            let length = rest.find('\n').unwrap_or(rest.len());
-            return self.at + if rest[..length].ends_with('\r') { length - 1 } else { length };
-        }
-        if let Some(length) = rest[2..].find("*/") {
-            return self.at + 2 + length + 2;
-        }
-        let opener = self.span(self.at, self.at + 2);
-        self.out.sink.push(errors::unclosed_comment(opener));
-        self.ended_in_comment = true;
-        self.bytes.len()
-    }
-
-    /// Decides what the gap before the next token is: blank, a separator, or the end of the item.
-    fn settle(&mut self, gap: &Gap) {
-        if self.item.is_none() {
-            return;
-        }
-        let Some(newline) = gap.first_newline else {
-            if gap.comment {
-                self.edits.push((gap.start..gap.end, b' '));
-            }
-            return;
-        };
-        if self.layout && !self.levels.is_empty() && self.indent == 0 && self.begins_item() {
-            return self.close_all(Some(self.word_span()));
-        }
-        let end = self.end;
-        let level = self.level();
-        level.spread |= level.at + 1 == end;
-        if self.shows_unclosed_parenthesis() {
-            self.close_parentheses(gap);
-            if self.levels.is_empty() {
-                return self.close_all(None);
-            }
-            return self.separate(gap, newline);
-        }
-        if self.joins() {
-            self.edits.push((gap.start..gap.end, b' '));
-        } else if self.levels.is_empty() && self.splits {
-            self.finish();
-        } else {
-            if gap.comment {
-                self.edits.push((gap.start..gap.end, b' '));
-            }
-            self.separate(gap, newline);
-        }
-    }
-
-    fn separate(&mut self, gap: &Gap, newline: usize) {
-        if gap.comment {
-            self.edits.push((newline..newline + 1, b'\n'));
-        }
-        let level = self.level();
-        (level.operators, level.angled) = (0, false);
-        self.last = Last::Open;
-    }
-
-    /// Whether the line goes on over the line end before the next token.
-    fn joins(&self) -> bool {
-        if matches!(self.innermost(), b'(' | b'[') || self.beyond > 0 {
-            return true;
-        }
-        match self.last {
-            Last::Operator | Last::Definer => !self.begins_field() && !self.begins_definition(),
-            Last::Operand | Last::Open => match (self.byte(self.at), self.byte(self.at + 1)) {
-                (b'+' | b'*' | b'/' | b'<' | b'>' | b'{', _) => true,
-                (b'|', b'>') | (b'=' | b'!', b'=') => true,
-                (b'.', next) => next.is_ascii_alphabetic() || next == b'_',
-                (b'a' | b'o', _) => matches!(self.word(self.at), "and" | "or"),
-                _ => false,
-            },
-        }
-    }
-
-    // --- What a line begins with ----------------------------------------------------------------------------
-
-    fn word(&self, at: usize) -> &'t str {
-        let length = self.bytes[at..].iter().take_while(|&&byte| is_word(byte)).count();
-        &self.text[at..at + length]
-    }
-
-    fn word_span(&self) -> Span {
-        self.span(self.at, self.at + self.word(self.at).len())
-    }
-
-    /// The word at `at`, and where the token behind it begins on the same line.
-    fn word_and_next(&self, at: usize) -> Option<(&'t str, usize)> {
-        let word = self.word(at);
-        let begins = word.bytes().next().is_some_and(|byte| !byte.is_ascii_digit());
-        let rest = &self.bytes[at + word.len()..];
-        let blank = rest.iter().take_while(|byte| matches!(byte, b' ' | b'\t')).count();
-        begins.then_some((word, at + word.len() + blank))
-    }
-
-    /// `name:`
-    fn begins_field(&self) -> bool {
-        self.word_and_next(self.at).is_some_and(|(_, next)| self.byte(next) == b':')
-    }
-
-    /// `let name` or `material name`
-    fn begins_definition(&self) -> bool {
-        let named = |next| self.word_and_next(next).is_some_and(|(name, _)| !matches!(name, "and" | "or"));
-        self.word_and_next(self.at)
-            .is_some_and(|(word, next)| matches!(word, "let" | "material") && named(next))
-    }
-
-    /// `kind {`, `kind name {`, `name =` or `let name`
-    fn begins_item(&self) -> bool {
-        let Some((word, next)) = self.word_and_next(self.at) else { return false };
-        let opens = |at| matches!(self.byte(at), b'{' | b'=') && self.byte(at + 1) != b'=';
-        match self.word_and_next(next) {
-            Some((_, after)) => self.begins_definition() || opens(after),
-            None => opens(next) && !matches!(word, "and" | "or"),
-        }
-    }
-
-    /// Whether the line begins what can stand in a body and not in the parentheses around it.
-    fn shows_unclosed_parenthesis(&self) -> bool {
-        let Some(level) = self.levels.last().filter(|level| level.bracket != b'{') else { return false };
-        match self.last {
-            Last::Operand => self.begins_item() || (self.begins_field() && !level.spread),
-            Last::Open => self.end > level.at + 1 && self.begins_field() && !level.call,
-            Last::Operator | Last::Definer => false,
-        }
-    }
-
     // --- Tokens ---------------------------------------------------------------------------------------------
 
     fn token(&mut self, first_on_line: bool) {
@@ -384,7 +226,7 @@ impl<'t> Cutter<'t> {
         let byte = self.bytes[start];
         if self.levels.is_empty() && self.splits {
             match byte {
-                b',' if !self.base.angled => return self.comma(),
+                b',' if self.base.angled == 0 => return self.comma(),
                 b')' | b']' | b'}' => return self.stray_closer(),
                 _ => {}
             }
@@ -459,10 +301,16 @@ impl<'t> Cutter<'t> {
         let operand = self.last == Last::Operand;
         let level = self.level();
         if byte == b'<' && !operand {
-            level.angled = true;
+            level.angled += 1;
+            let too_deep = level.angled > MAX_DEPTH;
             self.depth += 1;
-        } else if byte == b'>' && level.angled {
-            level.angled = false;
+            if too_deep && !self.skipped {
+                self.skipped = true;
+                let place = self.span(self.at, self.at + 1);
+                self.out.sink.push(errors::deep_brackets(place));
+            }
+        } else if byte == b'>' && level.angled > 0 {
+            level.angled -= 1;
             return self.take(1, Last::Operand);
         }
         self.operator(byte)
@@ -518,159 +366,6 @@ impl<'t> Cutter<'t> {
         let run = self.bytes[self.at..].iter().take_while(|&&byte| byte == BLOT).count();
         self.out.sink.push(errors::control(self.span(self.at, self.at + run)));
         self.take(run, Last::Operand)
-    }
-
-    // --- Brackets -------------------------------------------------------------------------------------------
-
-    fn open(&mut self) -> Last {
-        let byte = self.bytes[self.at];
-        if self.beyond > 0 || self.levels.len() == MAX_DEPTH {
-            if !self.skipped {
-                self.skipped = true;
-                let place = self.span(self.at, self.at + 1);
-                self.out.sink.push(errors::deep_brackets(place));
-            }
-            self.beyond += 1;
-        } else {
-            self.open[index(byte)] += 1;
-            let call = self.last == Last::Operand;
-            self.levels.push(Level { call, ..Level::new(byte, self.at, self.indent) });
-            self.depth = self.depth.max(self.levels.len());
-        }
-        self.take(1, Last::Open)
-    }
-
-    fn close(&mut self, first_on_line: bool) -> Last {
-        let closer = self.bytes[self.at];
-        if self.beyond > 0 {
-            self.beyond -= 1;
-            return self.take(1, Last::Operand);
-        }
-        if self.layout && first_on_line && closer == b'}' {
-            self.close_indented();
-        }
-        let opener = opener_of(closer);
-        let place = self.span(self.at, self.at + 1);
-        match self.levels.last() {
-            Some(level) if level.bracket == opener => self.pop(1),
-            Some(level) if level.forgiven > 0 => {
-                self.level().forgiven -= 1;
-                self.edits.push((self.at..self.at + 1, b' '));
-            }
-            Some(_) if self.open[index(opener)] > 0 => {
-                let matching = self.levels.iter().rposition(|level| level.bracket == opener);
-                self.close_above(matching.map_or(0, |index| index + 1), Some(place));
-                self.pop(1);
-            }
-            // Where braces are known not to match, this one was meant.
-            Some(level) if closer != b'}' && (level.bracket != b'{' || self.layout) => {
-                let right = closer_of(level.bracket);
-                let opened = self.span(level.at, level.at + 1);
-                self.out.sink.push(errors::wrong_closer(
-                    place,
-                    opened,
-                    char::from(closer),
-                    char::from(right),
-                ));
-                self.edits.push((self.at..self.at + 1, right));
-                self.pop(1);
-            }
-            _ => {
-                self.out.sink.push(errors::stray_closer(place, char::from(closer)));
-                self.edits.push((self.at..self.at + 1, b' '));
-            }
-        }
-        self.take(1, Last::Operand)
-    }
-
-    fn pop(&mut self, count: usize) {
-        for level in self.levels.drain(self.levels.len() - count..) {
-            self.open[index(level.bracket)] -= 1;
-        }
-    }
-
-    /// Closes the brackets above the level `keep`, which `at` shows to be unclosed: in the white space before
-    /// this token where there is enough of it, else by blotting them.
-    fn close_above(&mut self, keep: usize, seen: Option<Span>) {
-        self.report_unclosed(keep, seen);
-        let closers: Vec<u8> =
-            self.levels[keep..].iter().rev().map(|level| closer_of(level.bracket)).collect();
-        if self.at - self.end >= closers.len() {
-            for (index, closer) in closers.iter().enumerate() {
-                self.edits.push((self.end + index..self.end + index + 1, *closer));
-            }
-        } else {
-            self.blot(self.levels[keep].at, self.end);
-        }
-        self.pop(closers.len());
-    }
-
-    /// A line that begins an entry shows that the parentheses before it should have been closed.
-    fn close_parentheses(&mut self, gap: &Gap) {
-        let keep = self.levels.iter().rposition(|level| level.bracket == b'{').map_or(0, |index| index + 1);
-        let count = self.levels.len() - keep;
-        let seen = self.word_span();
-        self.report_unclosed(keep, Some(seen));
-        self.edits.push((gap.start..gap.end, b' '));
-        if keep == 0 && self.splits {
-            // The end of the item closes them.
-            self.base.forgiven += count;
-            return self.pop(count);
-        }
-        if gap.end - gap.start > count {
-            for index in 0..count {
-                let closer = closer_of(self.levels[self.levels.len() - 1 - index].bracket);
-                self.edits.push((gap.start + index..gap.start + index + 1, closer));
-            }
-        } else {
-            self.blot(self.levels[keep].at, self.end);
-        }
-        self.edits.push((gap.end - 1..gap.end, b'\n'));
-        self.pop(count);
-        self.level().forgiven += count;
-    }
-
-    /// Where braces are known not to match, a `}` that begins its line belongs to the `{` whose line is
-    /// indented as far.
-    fn close_indented(&mut self) {
-        let Some(top) = self.levels.iter().rposition(|level| level.bracket == b'{') else { return };
-        if self.levels[top].indent <= self.indent {
-            return;
-        }
-        let alike = |level: &Level| level.bracket == b'{' && level.indent == self.indent;
-        if let Some(matching) = self.levels[..top].iter().rposition(alike) {
-            let seen = self.span(self.at, self.at + 1);
-            self.close_above(matching + 1, Some(seen));
-        }
-    }
-
-    fn report_unclosed(&mut self, keep: usize, seen: Option<Span>) {
-        if self.skipped || self.ended_in_comment || keep == self.levels.len() {
-            return;
-        }
-        let openers = self.levels[keep..].iter().rev().map(|level| self.span(level.at, level.at + 1));
-        let closer = closer_of(self.innermost());
-        let diagnostic = errors::unclosed(openers, char::from(closer), seen);
-        self.out.sink.push(diagnostic);
-    }
-
-    fn stray_closer(&mut self) {
-        let start = self.at;
-        let closer = self.bytes[start];
-        if self.base.forgiven > 0 {
-            self.base.forgiven -= 1;
-            self.at += 1;
-            return;
-        }
-        // A run of them is one slip.
-        while self.byte(self.at) == closer {
-            self.at += 1;
-        }
-        let place = self.span(start, self.at);
-        self.out.sink.push(errors::stray_closer(place, char::from(closer)));
-        if self.item.is_some() {
-            self.edits.push((start..self.at, b' '));
-        }
     }
 
     // --- Items ----------------------------------------------------------------------------------------------
@@ -754,28 +449,4 @@ impl<'t> Cutter<'t> {
 
 fn is_word(byte: u8) -> bool {
     byte.is_ascii_alphanumeric() || byte == b'_' || byte >= 0x80
-}
-
-fn index(bracket: u8) -> usize {
-    match bracket {
-        b'(' => 0,
-        b'[' => 1,
-        _ => 2,
-    }
-}
-
-fn closer_of(opener: u8) -> u8 {
-    match opener {
-        b'(' => b')',
-        b'[' => b']',
-        _ => b'}',
-    }
-}
-
-fn opener_of(closer: u8) -> u8 {
-    match closer {
-        b')' => b'(',
-        b']' => b'[',
-        _ => b'{',
-    }
 }

@@ -250,6 +250,10 @@ fn scaled(builder: &Builder, value: Expr, depth: usize, unit: Option<Name>, span
 fn angled(builder: &Builder, pair: Node) -> Deep<Expr> {
     let span = builder.span(&pair);
     let open = Span { end: span.start + 1, ..span };
+    if !(pair.as_str().contains(',') && pair.as_str().ends_with('>')) {
+        builder.report(errors::unexpected_value("<", open));
+        return invalid(span);
+    }
     let close = Span { start: span.end - 1, ..span };
     builder.report(errors::angle_brackets(span, open, close));
     let (mut values, mut deepest) = (vec![], 0);

@@ -15,7 +15,11 @@ fn check_density(bsdf: &Bsdf) {
             let sample = bsdf.sample(wo, lobe, [a, b]).filter(|sample| !sample.specular)?;
             let (pdf, f) = (bsdf.pdf(wo, sample.wi), bsdf.eval(wo, sample.wi));
             assert!((sample.pdf / pdf - 1.0).abs() < 1e-6, "{} {pdf}", sample.pdf);
-            assert!((sample.weight * pdf - f).abs().max_element() <= 1e-6 * f.max_element(), "{}", sample.weight);
+            assert!(
+                (sample.weight * pdf - f).abs().max_element() <= 1e-6 * f.max_element(),
+                "{}",
+                sample.weight
+            );
             Some(sample.wi)
         };
         assert_density(draw, |wi| bsdf.pdf(wo, wi));
@@ -77,7 +81,9 @@ fn materials_that_lose_nothing_vanish_in_a_white_furnace() {
             assert_shows(&furnace(plastic, angle), 20_000, 1.0, slack);
         }
     }
-    let ball = |material| scene(v(0.0, 0.4, 5.0), DVec3::ZERO).with(sphere(DVec3::ZERO, 1.0), material).with_sky(1.0);
+    let ball = |material| {
+        scene(v(0.0, 0.4, 5.0), DVec3::ZERO).with(sphere(DVec3::ZERO, 1.0), material).with_sky(1.0)
+    };
     assert_shows(&ball(glass(1.5)).bounces(200), 4000, 1.0, 1e-9);
     assert_shows(&ball(glass(0.7)).bounces(200), 4000, 1.0, 1e-9);
     let mut inside = ball(white());
@@ -183,11 +189,16 @@ fn glass_reflects_by_fresnel() {
 #[test]
 fn total_reflection_lets_nothing_out() {
     // From below the surface of water, beyond and within the critical angle of 48.6°.
-    for (angle, expected) in [(0.9, 0.0), (0.7, 1.33 * 1.33 * (1.0 - fresnel_reflectance(cos(0.7), 1.0 / 1.33)))] {
+    for (angle, expected) in
+        [(0.9, 0.0), (0.7, 1.33 * 1.33 * (1.0 - fresnel_reflectance(cos(0.7), 1.0 / 1.33)))]
+    {
         let from = -3.0 * v(sin(angle), cos(angle), 0.0);
         let water = scene(from, DVec3::ZERO)
             .with(Shape::Plane { point: DVec3::ZERO, normal: DVec3::Y }, glass(1.33))
-            .with(Shape::Plane { point: -10.0 * DVec3::Y, normal: DVec3::Y }, Material::Diffuse { color: Rgb::ZERO })
+            .with(
+                Shape::Plane { point: -10.0 * DVec3::Y, normal: DVec3::Y },
+                Material::Diffuse { color: Rgb::ZERO },
+            )
             .with_sky(1.0);
         assert_shows(&water, 20_000, expected, 1e-9);
     }

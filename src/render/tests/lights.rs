@@ -41,7 +41,12 @@ fn a_sun_gives_its_irradiance() {
 #[test]
 fn a_glowing_sphere_gives_what_its_closed_form_says() {
     // Wholly above the horizon: E = π L (r/d)² cos θ.
-    for (center, radius) in [(v(0.0, 2.0, 0.0), 0.5), (v(2.0, 1.5, 1.0), 1.4), (v(0.0, 1.0, 0.0), 0.69), (v(800.0, 600.0, 0.0), 0.01)] {
+    for (center, radius) in [
+        (v(0.0, 2.0, 0.0), 0.5),
+        (v(2.0, 1.5, 1.0), 1.4),
+        (v(0.0, 1.0, 0.0), 0.69),
+        (v(800.0, 600.0, 0.0), 0.01),
+    ] {
         let d = center.length();
         let expected = 7.0 * radius * radius / (d * d) * center.y / d;
         assert_shows(&floor_below().with(sphere(center, radius), glow(7.0)), 20_000, expected, 1e-5);
@@ -61,7 +66,8 @@ fn a_glowing_sphere_may_be_partly_below_the_horizon() {
     // itself dips below a receiver that is a tiny ball's pole.
     let lamp = d * v(sin(theta), cos(theta), 0.0);
     let ball = sphere(v(0.0, -1e-4, 0.0), 1e-4);
-    let mut scene = scene(v(0.0, 0.1, 0.0), DVec3::ZERO).with(ball, white()).with(sphere(lamp, radius), glow(1.0));
+    let mut scene =
+        scene(v(0.0, 0.1, 0.0), DVec3::ZERO).with(ball, white()).with(sphere(lamp, radius), glow(1.0));
     scene.camera.half_extent = DVec2::splat(1e-9);
     assert_shows(&scene.bounces(1), 40_000, clipped, 1e-3);
 }
@@ -159,7 +165,8 @@ fn directions_to_lights_have_their_density() {
             }
             visible.then_some(light.wi)
         };
-        let source = if scene.lights.is_empty() { Source::Primitive(PrimitiveId(1)) } else { Source::Light(0) };
+        let source =
+            if scene.lights.is_empty() { Source::Primitive(PrimitiveId(1)) } else { Source::Light(0) };
         if matches!(name, "sky" | "ellipsoid") {
             assert_density(draw, |wi| density(&lights, &scene, &accel, &receiver, total, wi, source));
         } else {
@@ -203,14 +210,18 @@ fn closed_lamps_glow_outwards_and_open_ones_both_ways() {
 
 #[test]
 fn bounces_count_scattering() {
-    let seen = |bounces| scene(v(0.0, 1.0, 0.0), DVec3::ZERO).with(floor(), white()).with_sky(1.0).bounces(bounces);
+    let seen =
+        |bounces| scene(v(0.0, 1.0, 0.0), DVec3::ZERO).with(floor(), white()).with_sky(1.0).bounces(bounces);
     assert_shows(&seen(0), 10, 0.0, 0.0);
     assert_shows(&seen(1), 100, 1.0, 1e-9);
     // Two mirrors: each reflection is one.
     let mirrors = |bounces| {
         scene(v(0.5, 1.0, 0.0), v(0.0, 0.0, 0.0))
             .with(floor(), Material::Mirror { color: Rgb::ONE })
-            .with(Shape::Plane { point: v(-1.0, 0.0, 0.0), normal: DVec3::X }, Material::Mirror { color: Rgb::ONE })
+            .with(
+                Shape::Plane { point: v(-1.0, 0.0, 0.0), normal: DVec3::X },
+                Material::Mirror { color: Rgb::ONE },
+            )
             .with_sky(1.0)
             .bounces(bounces)
     };

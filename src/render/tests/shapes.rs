@@ -88,7 +88,8 @@ fn ray(random: &mut Random, shape: &Shape, i: usize) -> Ray {
         0 => [DVec3::X, DVec3::NEG_Y, DVec3::Z][i / 7 % 3],
         1 => {
             // Along the slope of the function where it starts, turned by a right angle: nearly a tangent.
-            let d = |axis: DVec3| implicit(shape, origin + 1e-3 * axis) - implicit(shape, origin - 1e-3 * axis);
+            let d =
+                |axis: DVec3| implicit(shape, origin + 1e-3 * axis) - implicit(shape, origin - 1e-3 * axis);
             let slope = v(d(DVec3::X), d(DVec3::Y), d(DVec3::Z));
             slope.cross(random.direction()).normalize()
         }
@@ -155,9 +156,13 @@ fn a_ray_that_starts_on_a_surface_meets_its_other_side_or_nothing() {
     let mut random = Random(31);
     for shape in shapes() {
         for i in 0..4000 {
-            let Some((t, face)) = intersect(&shape, &ray(&mut random, &shape, 2 + i % 5), None) else { continue };
+            let Some((t, face)) = intersect(&shape, &ray(&mut random, &shape, 2 + i % 5), None) else {
+                continue;
+            };
             let from = ray(&mut random, &shape, 3);
-            let Some((t, face)) = intersect(&shape, &from, None).or(Some((t, face))).filter(|_| true) else { continue };
+            let Some((t, face)) = intersect(&shape, &from, None).or(Some((t, face))).filter(|_| true) else {
+                continue;
+            };
             let start = surface_point(&shape, &from, t, face);
             if implicit(&shape, start.p).abs() > 1e-6 && face == Face::Side {
                 continue;
@@ -175,11 +180,18 @@ fn a_ray_that_starts_on_a_surface_meets_its_other_side_or_nothing() {
             match (exact, shifted) {
                 (None, None) => {}
                 (Some((t, a)), Some((s, b))) => {
-                    assert!(a == b && (t - s - step).abs() < 1e-6 * t.max(1.0), "{shape:?}: {t} on {a:?}, {s} on {b:?}");
+                    assert!(
+                        a == b && (t - s - step).abs() < 1e-6 * t.max(1.0),
+                        "{shape:?}: {t} on {a:?}, {s} on {b:?}"
+                    );
                 }
                 other => {
                     let t = other.0.or(other.1).map_or(0.0, |(t, _)| t);
-                    assert!(t < 1e-4 || t > 1e6, "{shape:?} from {face:?} {} {direction}: {other:?}", start.p);
+                    assert!(
+                        t < 1e-4 || t > 1e6,
+                        "{shape:?} from {face:?} {} {direction}: {other:?}",
+                        start.p
+                    );
                 }
             }
         }
@@ -205,7 +217,10 @@ fn rays_along_asymptotes_and_in_rulings_are_no_trouble() {
     assert_eq!(intersect(&one, &start, Some(Face::Side)).filter(|(_, face)| *face == Face::Side), None);
     // Between the sheets nothing is met.
     let two = cone(Form::TwoSheet, [-3.0, 3.0], true);
-    assert_eq!(intersect(&two, &Ray { origin: v(-9.0, 0.5, 0.0), direction: DVec3::X, start: None }, None), None);
+    assert_eq!(
+        intersect(&two, &Ray { origin: v(-9.0, 0.5, 0.0), direction: DVec3::X, start: None }, None),
+        None
+    );
 }
 
 #[test]
@@ -230,7 +245,9 @@ fn the_hierarchy_finds_what_a_list_finds() {
         let ray = Ray { origin: random.point(12.0), direction, start: None };
         let listed = (0..)
             .zip(&scene.primitives)
-            .filter_map(|(id, primitive)| intersect(&primitive.shape, &ray, None).map(|(t, _)| (t, PrimitiveId(id))))
+            .filter_map(|(id, primitive)| {
+                intersect(&primitive.shape, &ray, None).map(|(t, _)| (t, PrimitiveId(id)))
+            })
             .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let found = accel.closest(&ray).map(|hit| (hit.t, hit.place.primitive));
         assert_eq!(found, listed);

@@ -1,0 +1,169 @@
+//! Line ends: which of them separate.
+
+use super::super::ast::Comment;
+use super::super::errors;
+use super::{Cutter, Gap, Last, is_word};
+use crate::span::Span;
+
+impl<'t> Cutter<'t> {
+    /// Skips white space and comments.
+    pub(super) fn gap(&mut self) -> Gap {
+        let mut gap = Gap { start: self.at, end: self.at, first_newline: None, comment: false };
+        let mut line = None;
+        while let Some(&byte) = self.bytes.get(self.at) {
+            match byte {
+                b' ' | b'\t' | b'\r' => self.at += 1,
+                b'\n' => {
+                    gap.first_newline.get_or_insert(self.at);
+                    line = Some(self.at + 1);
+                    self.at += 1;
+                }
+                b'/' if matches!(self.byte(self.at + 1), b'/' | b'*') => {
+                    let start = self.at;
+                    self.at = self.comment_end();
+                    gap.comment = true;
+                    if let Some(index) = self.bytes[start..self.at].iter().position(|&b| b == b'\n') {
+                        gap.first_newline.get_or_insert(start + index);
+                    }
+                    let span = self.span(start, self.at);
+                    self.out.comments.push(Comment { span });
+                }
+                _ => break,
+            }
+        }
+        gap.end = self.at;
+        if let Some(line) = line {
+            self.indent = self.at - line;
+        }
+        gap
+    }
+
+    fn comment_end(&mut self) -> usize {
+        let rest = &self.text[self.at..];
+        if rest.starts_with("//") {
+            let length = rest.find('\n').unwrap_or(rest.len());
+            return self.at + if rest[..length].ends_with('\r') { length - 1 } else { length };
+        }
+        if let Some(length) = rest[2..].find("*/") {
+            return self.at + 2 + length + 2;
+        }
+        let opener = self.span(self.at, self.at + 2);
+        self.out.sink.push(errors::unclosed_comment(opener));
+        self.ended_in_comment = true;
+        self.bytes.len()
+    }
+
+    /// Decides what the gap before the next token is: blank, a separator, or the end of the item.
+    pub(super) fn settle(&mut self, gap: &Gap) {
+        if self.item.is_none() {
+            return;
+        }
+        let Some(newline) = gap.first_newline else {
+            if gap.comment {
+                self.edits.push((gap.start..gap.end, b' '));
+            }
+            return;
+        };
+        if self.layout && !self.levels.is_empty() && self.indent == 0 && self.begins_item() {
+            return self.close_all(Some(self.word_span()));
+        }
+        let end = self.end;
+        let level = self.level();
+        level.spread |= level.at + 1 == end;
+        if self.shows_unclosed_parenthesis() {
+            self.close_parentheses(gap);
+            if self.levels.is_empty() {
+                return self.close_all(None);
+            }
+            return self.separate(gap, newline);
+        }
+        if self.joins() {
+            self.edits.push((gap.start..gap.end, b' '));
+        } else if self.levels.is_empty() && self.splits {
+            self.finish();
+        } else {
+            if gap.comment {
+                self.edits.push((gap.start..gap.end, b' '));
+            }
+            self.separate(gap, newline);
+        }
+    }
+
+    fn separate(&mut self, gap: &Gap, newline: usize) {
+        if gap.comment {
+            self.edits.push((newline..newline + 1, b'\n'));
+        }
+        let level = self.level();
+        (level.operators, level.angled) = (0, 0);
+        self.last = Last::Open;
+    }
+
+    /// Whether the line goes on over the line end before the next token.
+    fn joins(&self) -> bool {
+        if matches!(self.innermost(), b'(' | b'[') || self.beyond > 0 {
+            return true;
+        }
+        match self.last {
+            Last::Operator | Last::Definer => !self.begins_field() && !self.begins_definition(),
+            Last::Operand | Last::Open => match (self.byte(self.at), self.byte(self.at + 1)) {
+                (b'+' | b'*' | b'/' | b'<' | b'>' | b'{', _) => true,
+                (b'|', b'>') | (b'=' | b'!', b'=') => true,
+                (b'.', next) => next.is_ascii_alphabetic() || next == b'_',
+                (b'a' | b'o', _) => matches!(self.word(self.at), "and" | "or"),
+                _ => false,
+            },
+        }
+    }
+
+    // --- What a line begins with ----------------------------------------------------------------------------
+
+    pub(super) fn word(&self, at: usize) -> &'t str {
+        let length = self.bytes[at..].iter().take_while(|&&byte| is_word(byte)).count();
+        &self.text[at..at + length]
+    }
+
+    pub(super) fn word_span(&self) -> Span {
+        self.span(self.at, self.at + self.word(self.at).len())
+    }
+
+    /// The word at `at`, and where the token behind it begins on the same line.
+    fn word_and_next(&self, at: usize) -> Option<(&'t str, usize)> {
+        let word = self.word(at);
+        let begins = word.bytes().next().is_some_and(|byte| !byte.is_ascii_digit());
+        let rest = &self.bytes[at + word.len()..];
+        let blank = rest.iter().take_while(|byte| matches!(byte, b' ' | b'\t')).count();
+        begins.then_some((word, at + word.len() + blank))
+    }
+
+    /// `name:`
+    fn begins_field(&self) -> bool {
+        self.word_and_next(self.at).is_some_and(|(_, next)| self.byte(next) == b':')
+    }
+
+    /// `let name` or `material name`
+    fn begins_definition(&self) -> bool {
+        let named = |next| self.word_and_next(next).is_some_and(|(name, _)| !matches!(name, "and" | "or"));
+        self.word_and_next(self.at)
+            .is_some_and(|(word, next)| matches!(word, "let" | "material") && named(next))
+    }
+
+    /// `kind {`, `kind name {`, `name =` or `let name`
+    fn begins_item(&self) -> bool {
+        let Some((word, next)) = self.word_and_next(self.at) else { return false };
+        let opens = |at| matches!(self.byte(at), b'{' | b'=') && self.byte(at + 1) != b'=';
+        match self.word_and_next(next) {
+            Some((_, after)) => self.begins_definition() || opens(after),
+            None => opens(next) && !matches!(word, "and" | "or"),
+        }
+    }
+
+    /// Whether the line begins what can stand in a body and not in the parentheses around it.
+    fn shows_unclosed_parenthesis(&self) -> bool {
+        let Some(level) = self.levels.last().filter(|level| level.bracket != b'{') else { return false };
+        match self.last {
+            Last::Operand => self.begins_item() || (self.begins_field() && !level.spread),
+            Last::Open => self.end > level.at + 1 && self.begins_field() && !level.call,
+            Last::Operator | Last::Definer => false,
+        }
+    }
+}
