@@ -1,7 +1,7 @@
 //! Ctrl-C and requests to end: whatever is going on, the process ends soon and leaves no torn file.
 
 use super::Exit;
-use super::standin::Control;
+use super::standin::render::Control;
 use super::terminal::Terminal;
 use std::collections::BTreeSet;
 use std::io;

@@ -1,6 +1,6 @@
 //! How far a picture is, on a terminal's standard error.
 
-use super::standin::Control;
+use super::standin::render::Control;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
