@@ -111,6 +111,16 @@ fn a_very_long_line_is_cut_and_soon_shown() {
 }
 
 #[test]
+fn a_very_long_word_in_a_sentence_is_cut() {
+    let (sources, id) = sources("x");
+    let message = format!("no `{}b` is known", "a".repeat(1_000_000));
+    let shown = human(&Diagnostic::new(Code::E0101, message, Span::new(id, 0, 1)), &sources, PLAIN);
+    let (first, _) = shown.split_once('\n').unwrap();
+    assert!(first.starts_with("E0101 × no `aaa") && first.ends_with("ab` is known"), "{first}");
+    assert!(first.chars().count() < 120, "{first}");
+}
+
+#[test]
 fn they_come_in_order_with_their_count() {
     let (sources, id) = sources("a b c\n");
     let at = |code, start| Diagnostic::new(code, format!("at {start}"), Span::new(id, start, start + 1));
