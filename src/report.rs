@@ -145,7 +145,8 @@ fn sentence(text: &str) -> String {
             format!("{head}…{tail}")
         }
     };
-    printable(&text.split(' ').map(shorten).collect::<Vec<_>>().join(" "))
+    let line = |line: &str| printable(&line.split(' ').map(shorten).collect::<Vec<_>>().join(" "));
+    text.lines().map(line).collect::<Vec<_>>().join("\n")
 }
 
 /// A text that cannot steer a terminal, nor reorder what is shown beside it.
