@@ -1,7 +1,7 @@
 //! The one table of kinds and their fields: types, units, defaults, ranges and documentation.
 //!
 //! Checking, lowering, messages and the reference page all read it, and no field is named anywhere else: the
-//! [`kinds!`] table also yields a module a kind (`sphere::RADIUS`, …) with a typed key a field.
+//! `kinds!` table also yields a module a kind (`sphere::RADIUS`, …) with a typed key a field.
 
 use crate::units::{self, Dim};
 use std::marker::PhantomData;
@@ -524,7 +524,8 @@ kinds! {
         /// This direction is upright in the picture.
         UP "up": Vector = Value("(0, 1, 0)"), ANY;
         /// Angle of view across the width.
-        FOV "fov": Angle = Absent("40deg, or what the lens gives"), Range { low: 0.0, high: 3.14, above: true };
+        FOV "fov": Angle = Absent("40deg, or what the lens gives"),
+            Range { low: 0.0, high: 179.0 / 180.0 * std::f64::consts::PI, above: true };
         /// In stops: 0 shows radiance 1 as white, 1 is twice as bright.
         EXPOSURE "exposure": Exposure = Value("auto"), within(-100.0, 100.0);
         /// Depth of field.
