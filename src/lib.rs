@@ -39,12 +39,12 @@ pub mod span;
 pub mod syntax;
 pub mod units;
 
-use diagnostic::Diagnostic;
+use diagnostic::{Code, Diagnostic};
 use eval::Origins;
 use lower::Overrides;
 use scene::Scene;
 use source::Sources;
-use span::SourceId;
+use span::{SourceId, Span};
 
 /// What compiling a source gives.
 #[derive(Debug)]
@@ -57,6 +57,8 @@ pub struct Compiled {
     pub diagnostics: Vec<Diagnostic>,
     /// One line for each default that was chosen for the user.
     pub notes: Vec<String>,
+    /// Where the source says how noisy the picture may be.
+    noise: Option<Span>,
 }
 
 /// Compiles a source to a scene: parse, check, evaluate, lower. Every stage runs, also after errors, so that
@@ -73,5 +75,17 @@ pub fn compile(sources: &Sources, id: SourceId, overrides: &Overrides) -> Compil
     diagnostics.sort_by_key(|diagnostic| (diagnostic.primary.span, diagnostic.code));
     diagnostics.dedup();
     let scene = lowered.scene.filter(|_| !diagnostic::any_errors(&diagnostics));
-    Compiled { scene, origins: things.origins, diagnostics, notes: lowered.notes }
+    Compiled { scene, origins: things.origins, diagnostics, notes: lowered.notes, noise: lowered.noise }
+}
+
+impl Compiled {
+    /// The warning of a render that ended noisier than the source asks for: `noise`, as a share of white, after
+    /// so many samples a pixel.
+    pub fn noise_not_reached(&self, noise: f64, samples: u32) -> Diagnostic {
+        let place = self.noise.unwrap_or(Span::new(SourceId(0), 0, 0));
+        let message = format!("the noise is still {:.2}% after {samples} samples a pixel", 100.0 * noise);
+        Diagnostic::new(Code::W0701, message, place)
+            .at("not reached")
+            .help("give larger lights, which are found more easily, or allow more noise")
+    }
 }

@@ -58,17 +58,17 @@ pub fn human(diagnostic: &Diagnostic, sources: &Sources, style: Style) -> String
     let spans: Vec<Span> = here.iter().map(|label| label.span).collect();
     let excerpt = Excerpt::new(source, &spans, style.width);
     let labels = here.iter().zip(excerpt.ranges()).enumerate().map(|(index, (label, range))| {
-        let text = (!label.text.is_empty()).then(|| printable(&label.text));
+        let text = (!label.text.is_empty()).then(|| sentence(&label.text));
         match index {
             0 => LabeledSpan::new_primary_with_span(text, range),
             _ => LabeledSpan::new_with_span(text, range),
         }
     });
     let shown = Shown {
-        message: printable(&diagnostic.message),
+        message: sentence(&diagnostic.message),
         severity: diagnostic.severity(),
         labels: labels.collect(),
-        help: diagnostic.help.as_deref().map(printable),
+        help: diagnostic.help.as_deref().map(sentence),
         excerpt: &excerpt,
     };
     let mut text = String::new();
@@ -78,7 +78,7 @@ pub fn human(diagnostic: &Diagnostic, sources: &Sources, style: Style) -> String
     // miette indents the first line by two columns.
     let mut text = text.trim_start().to_string();
     for label in elsewhere {
-        text.push_str(&format!("  {}: {}\n", printable(&label.text), at(label.span, sources)));
+        text.push_str(&format!("  {}: {}\n", sentence(&label.text), at(label.span, sources)));
     }
     for &span in &diagnostic.uses {
         text.push_str(&format!("  in `{}`, {}\n", head(sources.text(span)), at(span, sources)));
@@ -129,6 +129,24 @@ fn head(text: &str) -> String {
         Some((cut, _)) => printable(&text[..cut]) + "…",
         None => printable(text),
     }
+}
+
+/// A sentence about a source, [`printable`], with what is too long to be read in it cut in its middle: it may
+/// name something that was found there.
+fn sentence(text: &str) -> String {
+    const LONG: usize = 100;
+    const HEAD: usize = 60;
+    const TAIL: usize = 20;
+    let shorten = |word: &str| match word.char_indices().nth(LONG) {
+        None => word.to_string(),
+        Some(_) => {
+            let head: String = word.chars().take(HEAD).collect();
+            let tail = word.char_indices().rev().nth(TAIL - 1).map_or("", |(at, _)| &word[at..]);
+            format!("{head}…{tail}")
+        }
+    };
+    let line = |line: &str| printable(&line.split(' ').map(shorten).collect::<Vec<_>>().join(" "));
+    text.lines().map(line).collect::<Vec<_>>().join("\n")
 }
 
 /// A text that cannot steer a terminal, nor reorder what is shown beside it.

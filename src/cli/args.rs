@@ -248,7 +248,9 @@ fn whole(text: &str, wanted: &str) -> Result<u64, String> {
 fn within<T>(kind: KindId, key: &Key<T>, n: u64, what: &str) -> Result<(), String> {
     let range = kind.field(key.index(kind)).range;
     let wanted = || format!("{what} is from {} to {}", range.low, range.high);
-    range.contains(n as f64).then_some(()).ok_or_else(wanted)
+    // Beyond 2^53 not every number is one of f64.
+    let exact = n as f64 as u64 == n;
+    (exact && range.contains(n as f64)).then_some(()).ok_or_else(wanted)
 }
 
 fn tonemaps() -> impl TypedValueParser<Value = Tonemap> {

@@ -13,11 +13,11 @@ use rt_lang::diagnostic::Severity;
 use rt_lang::lower::Overrides;
 use rt_lang::output::{Depth, Facts, Format, Picture, encode};
 use rt_lang::render::{Cancelled, Control, Rendered, Shown, Tracer, Window};
-use rt_lang::scene::{Scene, Target as Goal};
+use rt_lang::scene::{self, Scene};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// A scene with the places of its picture.
 struct Job {
@@ -25,20 +25,37 @@ struct Job {
     targets: Vec<Target>,
 }
 
+/// What all jobs share.
+struct Context<'a> {
+    arguments: &'a Build,
+    threads: ThreadPool,
+    terminal: Terminal,
+    interrupt: &'a Interrupt,
+}
+
+/// A window of a picture as traced, and what there is to say of it.
+struct Traced {
+    picture: Picture,
+    samples: u32,
+    noise: f64,
+    target_met: bool,
+    /// What it is exposed by, whoever chose it.
+    stops: f64,
+}
+
 /// Makes the pictures in turn, also those behind one that fails.
 pub fn run(arguments: &Build, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
     let jobs = plan(arguments)?;
     let threads = ThreadPoolBuilder::new().num_threads(arguments.threads.unwrap_or(0)).build();
     let threads = threads.map_err(|error| Problem::new(format!("cannot start the threads: {error}")))?;
-    let mut worst = Exit::Done;
-    for job in &jobs {
-        let exit = build(job, arguments, &threads, terminal, interrupt).unwrap_or_else(|problem| {
+    let context = Context { arguments, threads, terminal, interrupt };
+    let exits = jobs.iter().map(|job| {
+        build(&context, job).unwrap_or_else(|problem| {
             terminal.problem(&problem);
             Exit::Usage
-        });
-        worst = worst.max(exit);
-    }
-    Ok(worst)
+        })
+    });
+    Ok(exits.max().unwrap_or(Exit::Done))
 }
 
 /// What goes where. Everything that can be seen to be wrong before a file is read is found here.
@@ -126,59 +143,61 @@ fn same(path: &Path) -> PathBuf {
     fs::canonicalize(path).ok().or_else(in_folder).unwrap_or_else(|| path.into())
 }
 
-fn build(
-    job: &Job,
-    arguments: &Build,
-    threads: &ThreadPool,
-    terminal: Terminal,
-    interrupt: &Interrupt,
-) -> Result<Exit, Problem> {
+fn build(context: &Context, job: &Job) -> Result<Exit, Problem> {
+    let Context { arguments, terminal, .. } = *context;
+    let start = Instant::now();
     let input = input::read(&job.scene)?;
     if let Some(refused) = input.refused {
         terminal.diagnostics(&[refused], &input.sources);
         return Ok(Exit::Diagnostics);
     }
-    let start = Instant::now();
     let mut compiled = compile(&input.sources, input.id, &overrides(arguments));
     if arguments.quiet {
         compiled.diagnostics.retain(|diagnostic| diagnostic.severity() == Severity::Error);
     }
     terminal.diagnostics(&compiled.diagnostics, &input.sources);
-    let Some(scene) = compiled.scene else { return Ok(Exit::Diagnostics) };
-    let window = window(&scene, arguments.crop)?;
-    let staged = stage(job, window, interrupt)?;
-    let exposed = trace(&scene, window, job, arguments.quiet, threads, terminal, interrupt);
-    let Ok((rendered, stops)) = exposed else { interrupt.wait() };
-    let picture = threads.install(|| {
-        let (offset, size) = ([window.x, window.y], [window.width, window.height]);
-        Picture::gather(scene.trace.size, offset, size, |x, y| rendered.film.mean(x, y))
-    });
-    let facts = Facts {
-        samples: Some(u64::from(rendered.samples)),
-        seed: Some(scene.trace.seed),
-        scene: Some(scene.hash().to_hex().to_string()),
-        stops: Some(stops),
-        tonemap: Some(scene.develop.tonemap),
-        ..Facts::unknown()
-    };
-    threads.install(|| write(&picture, &facts, arguments.look.bits, staged))?;
+    let Some(scene) = &compiled.scene else { return Ok(Exit::Diagnostics) };
+    let window = window(scene, arguments.crop)?;
+    let staged = stage(job, window, context.interrupt)?;
+    let Ok(traced) = trace(context, job, scene, window) else { context.interrupt.wait() };
+    let facts = facts(scene, &traced);
+    context.threads.install(|| write(&traced.picture, &facts, arguments.look.bits, staged))?;
     if !arguments.quiet {
-        for note in &compiled.notes {
-            terminal.line(note);
+        if !traced.target_met {
+            let warning = compiled.noise_not_reached(traced.noise, traced.samples);
+            terminal.diagnostics(&[warning], &input.sources);
         }
-        let mut said = vec![names(&job.targets) + ":", format!("{}×{},", window.width, window.height)];
-        said.push(format!("{} samples", rendered.samples));
-        if matches!(scene.trace.target, Goal::Noise(_)) {
-            said.push(format!("(noise {:.2} %)", rendered.noise * 100.0));
-        }
-        said.push(format!("in {},", duration(start.elapsed())));
-        said.push(match scene.develop.exposure {
-            Some(stops) => format!("exposure {stops}"),
-            None => format!("exposure chosen: `exposure: {stops}` in the camera keeps it"),
-        });
-        terminal.line(&said.join(" "));
+        compiled.notes.iter().for_each(|note| terminal.line(note));
+        terminal.line(&summary(job, scene, &traced, start.elapsed()));
     }
     Ok(Exit::Done)
+}
+
+fn facts(scene: &Scene, traced: &Traced) -> Facts {
+    Facts {
+        samples: Some(u64::from(traced.samples)),
+        seed: Some(scene.trace.seed),
+        scene: Some(scene.hash().to_hex().to_string()),
+        stops: Some(traced.stops),
+        tonemap: Some(scene.develop.tonemap),
+        ..Facts::unknown()
+    }
+}
+
+/// One line about a picture that is done.
+fn summary(job: &Job, scene: &Scene, traced: &Traced, time: Duration) -> String {
+    let noise = match scene.trace.target {
+        scene::Target::Samples(_) => String::new(),
+        scene::Target::Noise(_) => format!(" (noise {:.2} %)", traced.noise * 100.0),
+    };
+    let stops = traced.stops;
+    let exposure = match scene.develop.exposure {
+        Some(_) => format!("exposure {stops}"),
+        None => format!("exposure chosen; to keep it, write `exposure: {stops}` in the camera"),
+    };
+    let names = names(&job.targets);
+    let Traced { samples, picture: Picture { size: [width, height], .. }, .. } = traced;
+    format!("{names}: {width}×{height}, {samples} samples{noise} in {}, {exposure}", duration(time))
 }
 
 /// What the command line says in place of the file.
@@ -221,29 +240,26 @@ fn stage(job: &Job, window: Window, interrupt: &Interrupt) -> Result<Vec<Staged>
     job.targets.iter().map(|target| target.stage(interrupt)).collect()
 }
 
-/// Traces a window, and gives with it the stops it is exposed by.
-fn trace(
-    scene: &Scene,
-    window: Window,
-    job: &Job,
-    quiet: bool,
-    threads: &ThreadPool,
-    terminal: Terminal,
-    interrupt: &Interrupt,
-) -> Result<(Rendered, f64), Cancelled> {
+/// Traces a window, showing how far it is.
+fn trace(context: &Context, job: &Job, scene: &Scene, window: Window) -> Result<Traced, Cancelled> {
     let control = Arc::new(Control::new());
-    interrupt.watch(control.clone());
-    let shown = terminal.interactive && !quiet;
+    context.interrupt.watch(control.clone());
+    let shown = context.terminal.interactive && !context.arguments.quiet;
     let _progress = shown.then(|| Progress::watch(control.clone(), job.scene.display().to_string()));
-    threads.install(|| {
+    context.threads.install(|| {
         let tracer = Tracer::new(scene);
         let prepass = tracer.prepass();
-        // Two digits, so that the number that is printed gives the very picture when it is written down.
+        // Two digits, so that the number that is printed gives the very picture when it is written down; and
+        // no negative zero.
         let chosen = (prepass.exposure_stops * 100.0).round() / 100.0 + 0.0;
         let stops = scene.develop.exposure.unwrap_or(chosen);
         let shown = Shown { stops, tonemap: scene.develop.tonemap };
         let rendered = tracer.render(window, scene.trace.target, &prepass, shown, &control)?;
-        Ok((rendered, stops))
+        let (offset, size) = ([window.x, window.y], [window.width, window.height]);
+        let mean = |x, y| rendered.film.mean(x, y);
+        let picture = Picture::gather(scene.trace.size, offset, size, mean);
+        let Rendered { samples, noise, target_met, .. } = rendered;
+        Ok(Traced { picture, samples, noise, target_met, stops })
     })
 }
 

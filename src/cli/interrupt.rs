@@ -72,7 +72,7 @@ impl Interrupt {
             // Past the progress bar.
             terminal.line("");
         }
-        terminal.line("interrupted: nothing was written for the scene at work");
+        terminal.line("interrupted");
         std::process::exit(Exit::Interrupted as i32);
     }
 }

@@ -47,7 +47,8 @@ fn draw(control: &Control, name: String, finished: &AtomicBool) {
     while !finished.load(Ordering::Relaxed) {
         let progress = control.progress();
         let elapsed = start.elapsed();
-        bar.set_length(progress.total);
+        // Of no work yet known, none is done.
+        bar.set_length(progress.total.max(1));
         bar.set_position(progress.done);
         bar.set_message(message(progress.done, progress.total, elapsed));
         std::thread::park_timeout(PERIOD);

@@ -87,6 +87,8 @@ fn temporary(existing: Option<Permissions>) -> tempfile::Builder<'static, 'stati
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(existing.unwrap_or(Permissions::from_mode(0o666)));
     }
+    #[cfg(not(unix))]
+    let _ = existing;
     builder
 }
 

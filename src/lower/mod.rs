@@ -13,6 +13,7 @@ use crate::math::DVec3;
 use crate::scene::shape::Bounds;
 use crate::scene::{Develop, Light, Material, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace};
 use crate::schema::{Category, light, render, sky, sun};
+use crate::span::Span;
 use material::Materials;
 
 /// The most pixels a picture may have.
@@ -47,6 +48,8 @@ pub struct Lowered {
     pub notes: Vec<String>,
     /// What is wrong.
     pub diagnostics: Vec<Diagnostic>,
+    /// Where the noise target stands.
+    pub noise: Option<Span>,
 }
 
 /// Lowers the things of a picture. Things with errors, which were reported, are left out.
@@ -302,10 +305,11 @@ impl<'a> Lowering<'a> {
     fn trace(&mut self, blocks: &Blocks, size: [u32; 2]) -> (Trace, Tonemap) {
         let made = blocks.render.map(|thing| thing.made.clone()).unwrap_or_else(|| plain(render::KIND));
         let samples = made.given(render::SAMPLES).map(|(samples, _)| samples as u32);
-        let noise = made.given(render::NOISE).map(|(noise, _)| noise);
+        let noise = made.given(render::NOISE);
+        self.out.noise = noise.map(|(_, span)| span);
         let target = match (self.overrides.samples.or(samples), noise) {
             (Some(samples), _) => Target::Samples(samples),
-            (None, Some(noise)) => Target::Noise(noise),
+            (None, Some((noise, _))) => Target::Noise(noise),
             (None, None) => {
                 self.out.notes.push(format!(
                     "no samples or noise: {DEFAULT_SAMPLES} samples a pixel, as `render {{ samples: {DEFAULT_SAMPLES} }}`"

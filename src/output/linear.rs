@@ -2,8 +2,8 @@
 
 use super::{Facts, Picture};
 
-/// The greatest RGBE value: mantissa 255/256, exponent 127.
-const GREATEST: f32 = 255.0 / 256.0 * f32::from_bits(0x7f00_0000) * 2.0;
+/// The greatest RGBE value: 255/256 times 2 to the power 127.
+const GREATEST: f32 = 255.0 / 256.0 * f32::from_bits(0x7f00_0000);
 
 /// A Radiance picture (Greg Ward, "Real pixels", Graphics Gems II, 1991) with flat scan lines, sRGB's
 /// primaries. Negative channels are cut, as are those beyond the format's range.

@@ -111,6 +111,35 @@ fn a_very_long_line_is_cut_and_soon_shown() {
 }
 
 #[test]
+fn many_diagnostics_of_a_very_long_line_are_soon_shown() {
+    let (sources, id) = sources(&"x ".repeat(50_000_000));
+    let at = |start| Diagnostic::new(Code::E0101, "unknown", Span::new(id, start, start + 1)).at("here");
+    let many: Vec<Diagnostic> = (0..1000).map(|i| at(99_000_000 + 2 * i)).collect();
+    let begin = Instant::now();
+    assert!(all(&many, &sources, PLAIN).ends_with("… and 950 more\n1000 errors in stool.rt\n"));
+    assert!(begin.elapsed() < Duration::from_secs(5), "{:?}", begin.elapsed());
+}
+
+#[test]
+fn help_of_several_lines_keeps_them() {
+    let (sources, id) = sources("x");
+    let diagnostic =
+        Diagnostic::new(Code::E0101, "unknown", Span::new(id, 0, 1)).help("write one of\n`a`\n`b`");
+    let shown = human(&diagnostic, &sources, PLAIN);
+    assert!(shown.ends_with("  help: write one of\n        `a`\n        `b`\n"), "{shown}");
+}
+
+#[test]
+fn a_very_long_word_in_a_sentence_is_cut() {
+    let (sources, id) = sources("x");
+    let message = format!("no `{}b` is known", "a".repeat(1_000_000));
+    let shown = human(&Diagnostic::new(Code::E0101, message, Span::new(id, 0, 1)), &sources, PLAIN);
+    let (first, _) = shown.split_once('\n').unwrap();
+    assert!(first.starts_with("E0101 × no `aaa") && first.ends_with("ab` is known"), "{first}");
+    assert!(first.chars().count() < 120, "{first}");
+}
+
+#[test]
 fn they_come_in_order_with_their_count() {
     let (sources, id) = sources("a b c\n");
     let at = |code, start| Diagnostic::new(code, format!("at {start}"), Span::new(id, start, start + 1));

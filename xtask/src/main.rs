@@ -13,8 +13,11 @@ use std::time::Instant;
 /// What a step ends with: nothing, or why it failed.
 type Outcome = Result<(), String>;
 
-/// The steps of `e2e` with what each shows.
-const STEPS: &[(&str, fn(&Place) -> Outcome)] = &[
+/// Does one thing in its place.
+type Step = fn(&Place) -> Outcome;
+
+/// The steps of `e2e`, in order.
+const STEPS: &[(&str, Step)] = &[
     ("terminal", terminal),
     ("full-disk", full_disk),
     ("memory", memory),
