@@ -17,12 +17,13 @@ pub(super) fn closest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str>
         .iter()
         .map(|candidate| {
             let distance = strsim::damerau_levenshtein(name, candidate);
-            // Another case of the same letters is the nearest miss there is.
-            (if candidate.to_lowercase() == lower { 0 } else { distance }, *candidate)
+            // Another case of the same letters is the nearest miss there is; first letters are seldom wrong.
+            let distance = if candidate.to_lowercase() == lower { 0 } else { distance };
+            (distance, name.chars().next() != candidate.chars().next(), *candidate)
         })
-        .filter(|(distance, _)| *distance <= limit)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate)
+        .filter(|(distance, ..)| *distance <= limit)
+        .min_by_key(|(distance, other_start, _)| (*distance, *other_start))
+        .map(|(.., candidate)| candidate)
 }
 
 fn quoted(names: &[&str]) -> String {
@@ -92,7 +93,7 @@ pub(super) fn cycle(names: &[&Name]) -> Diagnostic {
 pub(super) fn unused(name: &Name) -> Diagnostic {
     Diagnostic::new(Code::W0106, format!("`{}` is never used", name.text), name.span)
         .at("declared here")
-        .help("remove it; a prototype is drawn where its name stands before `{}`")
+        .help(format!("use it, or remove it; a prototype is drawn by `{} {{}}`", name.text))
 }
 
 pub(super) fn wrong_keyword(keyword: Keyword, name: &Name, value: Span, ty: Type) -> Diagnostic {
@@ -245,6 +246,7 @@ pub(super) fn mismatch(field: &Field, span: Span, text: &str, ty: Type) -> Diagn
         Code::E0202 | Code::E0204 => with_unit(diagnostic, text, suggested_unit(field.ty)),
         Code::E0203 => match suggested_unit(field.ty) {
             Some(unit) => diagnostic.help(format!("write {wanted}, such as `{}`", sample(field.ty, &unit))),
+            None if text.starts_with('(') => diagnostic.help("leave the unit away: a direction has none"),
             None => diagnostic.help("divide by a unit to make it a plain number: `x / 1m`"),
         },
         Code::E0205 => diagnostic.help(color_help(text, ty)),
@@ -259,7 +261,10 @@ pub(super) fn mismatch(field: &Field, span: Span, text: &str, ty: Type) -> Diagn
             (FieldType::Transform, _) => {
                 diagnostic.help("such as `scale(2) |> turn(z: 10deg) |> move(0, 1m, 0)`")
             }
-            _ => diagnostic,
+            (ty, _) => match suggested_unit(ty) {
+                Some(unit) => diagnostic.help(format!("such as `{}`", sample(ty, &unit))),
+                None => diagnostic,
+            },
         },
     }
 }
@@ -388,7 +393,7 @@ pub(super) fn no_member(member: &Name, ty: Type) -> Diagnostic {
         Type::Tuple(..) => "it has `.x`, `.y` and `.z`",
         _ => "a triple has `.x`, `.y` and `.z`",
     };
-    Diagnostic::new(Code::E0101, format!("{} has no member `{}`", ty.describe(), member.text), member.span)
+    Diagnostic::new(Code::E0101, format!("no member `{}` in {}", member.text, ty.describe()), member.span)
         .at("unknown member")
         .help(help)
 }

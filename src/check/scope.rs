@@ -90,6 +90,7 @@ impl Checker<'_> {
         for cycle in cycles {
             let names: Vec<&Name> = cycle.iter().filter_map(|&slot| items[slot].name()).collect();
             self.report(errors::cycle(&names));
+            names.iter().for_each(|name| self.count_as_used(Some(name.text.clone())));
         }
         let mut bindings: Vec<Option<Binding>> = items.iter().map(|_| None).collect();
         for &slot in &order {

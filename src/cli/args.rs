@@ -2,6 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
+use rt_lang::lower::MAX_PIXELS;
 use rt_lang::output::Depth;
 use rt_lang::schema::{Key, KindId, Tonemap, Word, camera, render};
 use std::path::PathBuf;
@@ -193,6 +194,12 @@ fn size(text: &str) -> Result<[u32; 2], String> {
     let (width, height) = (side(width)?, side(height)?);
     for side in [width, height] {
         within(render::KIND, &render::SIZE, side, "a side")?;
+    }
+    if width * height > MAX_PIXELS {
+        return Err(format!(
+            "{width}×{height} are {} pixels, and at most {MAX_PIXELS} are traced",
+            width * height
+        ));
     }
     Ok([width as u32, height as u32])
 }

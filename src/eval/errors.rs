@@ -35,7 +35,7 @@ pub(super) fn out_of_range(kind: KindId, field: &Field, value: &Value, span: Spa
     let bad = parts.into_iter().find(|part| !field.range.contains(*part))?;
     let dim = dimension(field.ty);
     let shown = format!("{}{}", show(bad), dim.example_unit());
-    let allowed = allowed(field.range, dim);
+    let allowed = allowed(field.ty, field.range);
     if field.ty == FieldType::Color && bad > field.range.high {
         let message = format!("this `{}` reflects more than it receives", kind.get().name);
         let diagnostic = Diagnostic::new(Code::E0402, message, span);
@@ -56,14 +56,17 @@ fn dimension(ty: FieldType) -> Dim {
     }
 }
 
-fn allowed(range: Range, dim: Dim) -> String {
-    let unit = dim.example_unit();
-    let (low, high) = (show(range.low), show(range.high));
+fn allowed(ty: FieldType, range: Range) -> String {
+    let dim = dimension(ty);
+    // Nothing is nothing in any unit.
+    let with_unit = |x: f64| if x == 0.0 { show(x) } else { format!("{}{}", show(x), dim.example_unit()) };
+    let (low, high) = (with_unit(range.low), with_unit(range.high));
     match (range.above, range.high == f64::INFINITY) {
-        (true, true) => format!("above {low}{unit}"),
-        (false, true) => format!("{low}{unit} or more"),
-        (true, false) => format!("above {low}{unit} and at most {high}{unit}"),
-        (false, false) => format!("from {low}{unit} to {high}{unit}"),
+        (true, true) => format!("above {low}"),
+        (false, true) => format!("{low} or more"),
+        (true, false) => format!("above {low} and at most {high}"),
+        (false, false) if ty == FieldType::Int && range.high == range.low + 1.0 => format!("{low} or {high}"),
+        (false, false) => format!("from {low} to {high}"),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::read::Read;
 use crate::color::Rgb;
 use crate::math::{DAffine3, DVec3};
-use crate::schema::{Key, KindId};
+use crate::schema::{Key, KindId, Preset};
 use crate::span::Span;
 use smol_str::SmolStr;
 use std::rc::Rc;
@@ -79,9 +79,12 @@ impl Made {
         Some((T::read(&given.value)?, given.span))
     }
 
-    /// Whether no field has an error.
+    /// Whether no field has an error, and none that must be given is missing.
     pub fn is_sound(&self) -> bool {
-        self.fields.iter().flatten().all(|given| given.value.is_sound())
+        self.kind.fields().zip(&self.fields).all(|(field, given)| match given {
+            Some(given) => given.value.is_sound(),
+            None => field.default != Preset::Required,
+        })
     }
 }
 

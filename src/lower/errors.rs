@@ -102,7 +102,7 @@ pub(super) fn looks_at_itself(from: Span, look: Option<Span>) -> Diagnostic {
 }
 
 pub(super) fn up_along_view(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0404, "`up` points along the view, and so leaves the picture unturned", span)
+    Diagnostic::new(Code::E0404, "`up` points along the view, so nothing says what is upright", span)
         .at("along the view, or of length 0")
         .help("choose another direction, such as `(0, 0, -1)` for a view from above")
 }
