@@ -217,7 +217,7 @@ fn split(items: &mut [Item], bounds: Bounds, depth: usize) -> Option<(usize, usi
     } else {
         2
     };
-    if depth >= DEEPEST_SAH || !(size[axis] > 0.0) {
+    if depth >= DEEPEST_SAH || size[axis] <= 0.0 {
         return (items.len() > *LEAF.end()).then(|| (halve(items, axis), axis));
     }
     let bin = |item: &Item| {

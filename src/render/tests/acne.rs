@@ -5,7 +5,8 @@ use crate::render::shape::{Ray, surface_point};
 
 #[test]
 fn nothing_leaves_a_room_of_giant_spheres() {
-    let centers = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z].map(|axis| 1000.0 * axis);
+    let centers =
+        [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z].map(|axis| 1000.0 * axis);
     let room = centers
         .iter()
         .fold(scene(DVec3::ZERO, DVec3::Z), |scene, center| scene.with(sphere(*center, 940.0), white()));
@@ -15,7 +16,12 @@ fn nothing_leaves_a_room_of_giant_spheres() {
     for i in 0..1_000_000 {
         let hit = accel.closest(&ray).expect("the room is closed");
         let last = ray.start.map(|start| start.primitive);
-        assert_ne!(Some(hit.place.primitive), last, "bounce {i}: a convex wall is met again after {} m", hit.t);
+        assert_ne!(
+            Some(hit.place.primitive),
+            last,
+            "bounce {i}: a convex wall is met again after {} m",
+            hit.t
+        );
         let shape = &room.primitives[hit.place.primitive.0 as usize].shape;
         let point = surface_point(shape, &ray, hit.t, hit.place.face);
         assert!(point.n.dot(ray.direction) < 0.0, "bounce {i}: a wall is met from behind");
@@ -44,6 +50,8 @@ fn a_giant_glass_sphere_is_met_once_from_each_side() {
         let inside = accel.closest(&Ray { origin: point.p, direction: down, start: Some(hit.place) });
         assert!(inside.is_some_and(|hit| hit.t > 100.0), "{inside:?}");
         let mirrored = down - 2.0 * down.dot(point.n) * point.n;
-        assert!(accel.closest(&Ray { origin: point.p, direction: mirrored, start: Some(hit.place) }).is_none());
+        assert!(
+            accel.closest(&Ray { origin: point.p, direction: mirrored, start: Some(hit.place) }).is_none()
+        );
     }
 }

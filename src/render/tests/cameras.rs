@@ -100,7 +100,10 @@ fn the_circle_of_confusion_is_that_of_a_thin_lens() {
         let most = points.iter().map(|p| p.length()).fold(0.0, f64::max);
         let mean = points.iter().map(|p| p.length_squared()).sum::<f64>() / points.len() as f64;
         assert!(most <= radius + 1e-6 && most >= 0.98 * radius, "at {distance}: {most}, not {radius}");
-        assert!((mean - 0.5 * radius * radius).abs() < 1e-3 * radius * radius + 1e-9, "at {distance}: {mean}");
+        assert!(
+            (mean - 0.5 * radius * radius).abs() < 1e-3 * radius * radius + 1e-9,
+            "at {distance}: {mean}"
+        );
     }
 }
 

@@ -69,7 +69,11 @@ fn noise_is_met_or_told() {
     scene.trace.size = [16, 12];
     let window = Window::whole(scene.trace.size);
     let rough = render(&scene, window, Target::Noise(0.2));
-    assert!(rough.target_met && rough.noise <= 0.2 && rough.samples >= FIRST_NOISE_SAMPLES, "{}", rough.noise);
+    assert!(
+        rough.target_met && rough.noise <= 0.2 && rough.samples >= FIRST_NOISE_SAMPLES,
+        "{}",
+        rough.noise
+    );
     let finer = render(&scene, window, Target::Noise(0.5 * rough.noise));
     assert!(finer.samples > rough.samples && finer.noise <= 0.5 * rough.noise);
     assert_eq!(finer.film.samples(3, 3), finer.samples);

@@ -41,7 +41,12 @@ fn a_sun_gives_its_irradiance() {
 #[test]
 fn a_glowing_sphere_gives_what_its_closed_form_says() {
     // Wholly above the horizon: E = π L (r/d)² cos θ.
-    for (center, radius) in [(v(0.0, 2.0, 0.0), 0.5), (v(2.0, 1.5, 1.0), 1.4), (v(0.0, 1.0, 0.0), 0.69), (v(800.0, 600.0, 0.0), 0.01)] {
+    for (center, radius) in [
+        (v(0.0, 2.0, 0.0), 0.5),
+        (v(2.0, 1.5, 1.0), 1.4),
+        (v(0.0, 1.0, 0.0), 0.69),
+        (v(800.0, 600.0, 0.0), 0.01),
+    ] {
         let d = center.length();
         let expected = 7.0 * radius * radius / (d * d) * center.y / d;
         assert_shows(&floor_below().with(sphere(center, radius), glow(7.0)), 20_000, expected, 1e-5);
@@ -61,7 +66,8 @@ fn a_glowing_sphere_may_be_partly_below_the_horizon() {
     // itself dips below a receiver that is a tiny ball's pole.
     let lamp = d * v(sin(theta), cos(theta), 0.0);
     let ball = sphere(v(0.0, -1e-4, 0.0), 1e-4);
-    let mut scene = scene(v(0.0, 0.1, 0.0), DVec3::ZERO).with(ball, white()).with(sphere(lamp, radius), glow(1.0));
+    let mut scene =
+        scene(v(0.0, 0.1, 0.0), DVec3::ZERO).with(ball, white()).with(sphere(lamp, radius), glow(1.0));
     scene.camera.half_extent = DVec2::splat(1e-9);
     assert_shows(&scene.bounces(1), 40_000, clipped, 1e-3);
 }
@@ -138,6 +144,8 @@ fn gathering_and_finding_agree() {
 #[test]
 fn directions_to_lights_have_their_density() {
     let receiver = Receiver { p: DVec3::ZERO, n: Some(DVec3::Y) };
+    // Over cells of the sphere where the density is smooth; the silhouette of a quadric lamp is not, and is left
+    // to `gathering_and_finding_agree`.
     for (name, scene) in lamps() {
         if name == "several" || name.contains("open") {
             continue;
@@ -151,7 +159,7 @@ fn directions_to_lights_have_their_density() {
             let (lamp, _, part) = lights.choose(&receiver, total, choice);
             let light = lamp.sample(&receiver, part, [a, b])?;
             let first = accel.closest(&seen(light.wi)).map_or(f64::INFINITY, |hit| hit.t);
-            let visible = !(first < light.distance * (1.0 - 1e-9));
+            let visible = first >= light.distance * (1.0 - 1e-9);
             if visible {
                 let source = lamp.source();
                 let pdf = density(&lights, &scene, &accel, &receiver, total, light.wi, source);
@@ -159,12 +167,15 @@ fn directions_to_lights_have_their_density() {
             }
             visible.then_some(light.wi)
         };
-        let source = if scene.lights.is_empty() { Source::Primitive(PrimitiveId(1)) } else { Source::Light(0) };
-        if matches!(name, "sky" | "ellipsoid") {
+        let source =
+            if scene.lights.is_empty() { Source::Primitive(PrimitiveId(1)) } else { Source::Light(0) };
+        if matches!(name, "sky" | "sphere" | "sun") {
             assert_density(draw, |wi| density(&lights, &scene, &accel, &receiver, total, wi, source));
         } else {
             let mut random = Random(9);
-            (0..5000).for_each(|_| drop(draw([random.next(), random.next(), random.next()])));
+            for _ in 0..5000 {
+                draw([random.next(), random.next(), random.next()]);
+            }
         }
     }
 }
@@ -180,7 +191,8 @@ fn density(
 ) -> f64 {
     let ray = Ray { origin: receiver.p, direction: wi, start: None };
     if let Source::Light(_) = source {
-        return lights.pdf(source, receiver, total, wi, None);
+        let seen = lights.beyond(wi).any(|(seen, _)| seen == source);
+        return if seen { lights.pdf(source, receiver, total, wi, None) } else { 0.0 };
     }
     let Some(hit) = accel.closest(&ray) else { return 0.0 };
     let point = shape::surface_point(&scene.primitives[1].shape, &ray, hit.t, hit.place.face);
@@ -203,14 +215,18 @@ fn closed_lamps_glow_outwards_and_open_ones_both_ways() {
 
 #[test]
 fn bounces_count_scattering() {
-    let seen = |bounces| scene(v(0.0, 1.0, 0.0), DVec3::ZERO).with(floor(), white()).with_sky(1.0).bounces(bounces);
+    let seen =
+        |bounces| scene(v(0.0, 1.0, 0.0), DVec3::ZERO).with(floor(), white()).with_sky(1.0).bounces(bounces);
     assert_shows(&seen(0), 10, 0.0, 0.0);
     assert_shows(&seen(1), 100, 1.0, 1e-9);
     // Two mirrors: each reflection is one.
     let mirrors = |bounces| {
         scene(v(0.5, 1.0, 0.0), v(0.0, 0.0, 0.0))
             .with(floor(), Material::Mirror { color: Rgb::ONE })
-            .with(Shape::Plane { point: v(-1.0, 0.0, 0.0), normal: DVec3::X }, Material::Mirror { color: Rgb::ONE })
+            .with(
+                Shape::Plane { point: v(-1.0, 0.0, 0.0), normal: DVec3::X },
+                Material::Mirror { color: Rgb::ONE },
+            )
             .with_sky(1.0)
             .bounces(bounces)
     };

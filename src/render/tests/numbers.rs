@@ -16,7 +16,10 @@ fn every_pair_is_a_net() {
                 for [x, y] in &points {
                     let (columns, rows) = (1u32 << bits, 1u32 << (8 - bits));
                     let cell = (x * f64::from(columns)) as u32 * rows + (y * f64::from(rows)) as u32;
-                    assert!(!std::mem::replace(&mut seen[cell as usize], true), "{pair:?}: two points in a cell");
+                    assert!(
+                        !std::mem::replace(&mut seen[cell as usize], true),
+                        "{pair:?}: two points in a cell"
+                    );
                 }
             }
         }
@@ -26,7 +29,8 @@ fn every_pair_is_a_net() {
 #[test]
 fn dimensions_do_not_correlate() {
     const N: u32 = 1024;
-    let pairs = [Pair::Film, Pair::Lens, Pair::Direction(0), Pair::Lobe(0), Pair::Light(0), Pair::Direction(1)];
+    let pairs =
+        [Pair::Film, Pair::Lens, Pair::Direction(0), Pair::Lobe(0), Pair::Light(0), Pair::Direction(1)];
     let mut sums = [[0.0; 12]; 12];
     for pixel in 0..16 {
         for i in 0..N {
@@ -115,7 +119,9 @@ fn a_pixel_knows_its_mean_and_error_and_does_not_overflow() {
 
 #[test]
 fn scales_are_finite_powers_of_two() {
-    for (typical, peak) in [(0.0, 0.0), (1.0, 1.0), (1e-300, 1e300), (1e300, 1e300), (0.0, 1e-320), (1e-320, 0.0)] {
+    for (typical, peak) in
+        [(0.0, 0.0), (1.0, 1.0), (1e-300, 1e300), (1e300, 1e300), (0.0, 1e-320), (1e-320, 0.0)]
+    {
         let scale = scale_for(typical, peak);
         assert!(scale.is_normal() && (1.0 / scale).is_normal(), "{typical} {peak}: {scale}");
         assert_eq!(scale.to_bits() & ((1 << 52) - 1), 0, "{scale} is no power of two");
