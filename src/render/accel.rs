@@ -126,7 +126,7 @@ impl<'s> Accel<'s> {
         if self.nodes.is_empty() {
             return;
         }
-        let inverse = ray.direction.recip();
+        let inverse = inverse(ray.direction);
         let mut stack = [0u32; STACK];
         let mut waiting = 0;
         let mut at = 0;
@@ -188,15 +188,26 @@ fn padded(bounds: Bounds) -> Bounds {
     Bounds { min: bounds.min - slack, max: bounds.max + slack }
 }
 
-/// Whether a ray meets a box at a distance between 0 and `limit`. Where the ray runs within a box's plane the
-/// product is NaN, which `min` and `max` pass over. The last factor covers the rounding of the slabs (Thiago
-/// Ize, "Robust BVH ray traversal", JCGT 2013).
+/// One over each component of a direction; a component of zero counts as one that is too small to matter, so that
+/// no product of the slab test is 0 × ∞.
+fn inverse(direction: DVec3) -> DVec3 {
+    const LEAST: f64 = 1e-200;
+    let invert = |d: f64| 1.0 / if d.abs() < LEAST { LEAST } else { d };
+    DVec3::new(invert(direction.x), invert(direction.y), invert(direction.z))
+}
+
+/// Whether a ray meets a box at a distance between 0 and `limit`. The last factor covers the rounding of the slabs
+/// (Thiago Ize, "Robust BVH ray traversal", JCGT 2013).
 fn meets(bounds: &Bounds, origin: DVec3, inverse: DVec3, limit: f64) -> bool {
+    // Plain comparisons are one instruction each; `f64::min` would also look for NaN.
+    let lesser = |a: f64, b: f64| if a < b { a } else { b };
+    let greater = |a: f64, b: f64| if a > b { a } else { b };
     let low = (bounds.min - origin) * inverse;
     let high = (bounds.max - origin) * inverse;
-    let enter = low.x.min(high.x).max(low.y.min(high.y)).max(low.z.min(high.z)).max(0.0);
-    let leave = low.x.max(high.x).min(low.y.max(high.y)).min(low.z.max(high.z));
-    enter <= limit && enter <= leave * (1.0 + 4.0 * f64::EPSILON)
+    let enter = greater(greater(lesser(low.x, high.x), lesser(low.y, high.y)), lesser(low.z, high.z));
+    let leave = lesser(lesser(greater(low.x, high.x), greater(low.y, high.y)), greater(low.z, high.z));
+    let leave = leave * (1.0 + 4.0 * f64::EPSILON);
+    enter <= limit && enter <= leave && leave >= 0.0
 }
 
 /// Parts items in two by their centres along the longest axis; returns where and the axis, or none if a leaf is
@@ -217,7 +228,7 @@ fn split(items: &mut [Item], bounds: Bounds, depth: usize) -> Option<(usize, usi
     } else {
         2
     };
-    if depth >= DEEPEST_SAH || !(size[axis] > 0.0) {
+    if depth >= DEEPEST_SAH || size[axis] <= 0.0 {
         return (items.len() > *LEAF.end()).then(|| (halve(items, axis), axis));
     }
     let bin = |item: &Item| {

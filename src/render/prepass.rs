@@ -65,12 +65,13 @@ fn log_mean(sorted: &[f64]) -> f64 {
     exp(lit.iter().map(|v| ln(v.max(1e-3 * mean)) / count).sum())
 }
 
-/// Halfway, in stops, between what makes the typical a middle grey and what keeps the bright below white.
+/// Between what makes the typical a middle grey and what puts the bright just below white, in stops; nearer to the
+/// second, so that a bright scene stays one.
 fn exposure(typical: f64, bright: f64) -> f64 {
     if typical == 0.0 {
         return 0.0;
     }
-    let stops = 0.5 * (ln(MIDDLE / typical) + ln(BRIGHT / bright)) / LN_2;
+    let stops = (ln(MIDDLE / typical) + 2.0 * ln(BRIGHT / bright)) / (3.0 * LN_2);
     // To a hundredth, so that it can be pinned as it is printed.
     ((stops * 100.0).round() / 100.0).clamp(-100.0, 100.0)
 }

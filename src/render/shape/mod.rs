@@ -53,6 +53,7 @@ pub struct SurfacePoint {
 
 /// The least distance above 0 at which a ray meets a shape. `start` is the face that the ray starts on, if it
 /// starts on this very shape.
+#[inline]
 pub fn intersect(shape: &Shape, ray: &Ray, start: Option<Face>) -> Option<(f64, Face)> {
     match shape {
         Shape::Sphere { center, radius } => {

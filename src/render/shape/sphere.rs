@@ -6,6 +6,7 @@ use crate::math::DVec3;
 /// The least distance above 0. With o = origin − centre and b = −o·d it solves t² − 2bt + o·o − r² = 0. The
 /// discriminant is taken from the offset of the ray from the centre, which does not cancel for a small sphere
 /// far away (Haines et al., *Ray Tracing Gems* ch. 7), and the smaller root from the product of the two.
+#[inline]
 pub(super) fn intersect(center: DVec3, radius: f64, ray: &Ray, on_it: bool) -> Option<f64> {
     let o = ray.origin - center;
     let b = -o.dot(ray.direction);

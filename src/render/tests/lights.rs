@@ -144,6 +144,8 @@ fn gathering_and_finding_agree() {
 #[test]
 fn directions_to_lights_have_their_density() {
     let receiver = Receiver { p: DVec3::ZERO, n: Some(DVec3::Y) };
+    // Over cells of the sphere where the density is smooth; the silhouette of a quadric lamp is not, and is left
+    // to `gathering_and_finding_agree`.
     for (name, scene) in lamps() {
         if name == "several" || name.contains("open") {
             continue;
@@ -157,7 +159,7 @@ fn directions_to_lights_have_their_density() {
             let (lamp, _, part) = lights.choose(&receiver, total, choice);
             let light = lamp.sample(&receiver, part, [a, b])?;
             let first = accel.closest(&seen(light.wi)).map_or(f64::INFINITY, |hit| hit.t);
-            let visible = !(first < light.distance * (1.0 - 1e-9));
+            let visible = first >= light.distance * (1.0 - 1e-9);
             if visible {
                 let source = lamp.source();
                 let pdf = density(&lights, &scene, &accel, &receiver, total, light.wi, source);
@@ -167,11 +169,13 @@ fn directions_to_lights_have_their_density() {
         };
         let source =
             if scene.lights.is_empty() { Source::Primitive(PrimitiveId(1)) } else { Source::Light(0) };
-        if matches!(name, "sky" | "ellipsoid") {
+        if matches!(name, "sky" | "sphere" | "sun") {
             assert_density(draw, |wi| density(&lights, &scene, &accel, &receiver, total, wi, source));
         } else {
             let mut random = Random(9);
-            (0..5000).for_each(|_| drop(draw([random.next(), random.next(), random.next()])));
+            for _ in 0..5000 {
+                draw([random.next(), random.next(), random.next()]);
+            }
         }
     }
 }
@@ -187,7 +191,8 @@ fn density(
 ) -> f64 {
     let ray = Ray { origin: receiver.p, direction: wi, start: None };
     if let Source::Light(_) = source {
-        return lights.pdf(source, receiver, total, wi, None);
+        let seen = lights.beyond(wi).any(|(seen, _)| seen == source);
+        return if seen { lights.pdf(source, receiver, total, wi, None) } else { 0.0 };
     }
     let Some(hit) = accel.closest(&ray) else { return 0.0 };
     let point = shape::surface_point(&scene.primitives[1].shape, &ray, hit.t, hit.place.face);

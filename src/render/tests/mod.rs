@@ -191,7 +191,7 @@ impl Random {
 fn assert_density(mut draw: impl FnMut([f64; 3]) -> Option<DVec3>, pdf: impl Fn(DVec3) -> f64) {
     const ACROSS: usize = 24;
     const AROUND: usize = 36;
-    const FINE: usize = 20;
+    const FINE: usize = 48;
     const DRAWS: usize = 200_000;
     let mut random = Random(7);
     let mut observed = vec![0u64; ACROSS * AROUND + 1];
@@ -206,13 +206,17 @@ fn assert_density(mut draw: impl FnMut([f64; 3]) -> Option<DVec3>, pdf: impl Fn(
     }
     let mut expected: Vec<f64> = (0..ACROSS * AROUND)
         .map(|cell| {
+            // Evenly in the angles, so that a narrow lobe about the pole is resolved.
+            let edge = |row: usize| crate::math::acos(2.0 * row as f64 / ACROSS as f64 - 1.0);
+            let (top, bottom) = (edge(cell / AROUND + 1), edge(cell / AROUND));
+            let (tall, wide) = ((bottom - top) / FINE as f64, 2.0 * PI / (FINE * AROUND) as f64);
             let mut sum = 0.0;
             for i in 0..FINE * FINE {
-                let z = ((cell / AROUND) as f64 + ((i / FINE) as f64 + 0.5) / FINE as f64) / ACROSS as f64;
-                let turn = ((cell % AROUND) as f64 + ((i % FINE) as f64 + 0.5) / FINE as f64) / AROUND as f64;
-                sum += pdf(polar(2.0 * z - 1.0, 2.0 * PI * turn));
+                let theta = top + ((i / FINE) as f64 + 0.5) * tall;
+                let angle = ((cell % AROUND * FINE + i % FINE) as f64 + 0.5) * wide;
+                sum += pdf(polar(crate::math::cos(theta), angle)) * crate::math::sin(theta);
             }
-            sum * DRAWS as f64 * 4.0 * PI / (FINE * FINE * ACROSS * AROUND) as f64
+            sum * tall * wide * DRAWS as f64
         })
         .collect();
     let total: f64 = expected.iter().sum();
