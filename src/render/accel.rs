@@ -16,7 +16,8 @@ pub struct Accel<'s> {
     nodes: Vec<Node>,
     /// Indices of surfaces, such that each leaf's lie together.
     order: Vec<u32>,
-    unbounded: Vec<u32>,
+    /// Those asked for every ray: without end, or so large that a box around them would be met by most rays.
+    always: Vec<u32>,
 }
 
 /// Where a ray meets something.
@@ -40,6 +41,10 @@ struct Node {
 
 /// Surfaces that a leaf may hold even if splitting it looks cheaper, and must not exceed if that looks dearer.
 const LEAF: std::ops::RangeInclusive<usize> = 2..=16;
+/// So few surfaces are asked one by one.
+const FEW: usize = 8;
+/// A box that has this share of the area of the box around everything is met by about that share of rays.
+const LARGE: f64 = 0.2;
 const BINS: usize = 16;
 /// What stepping down one node costs in intersections.
 const STEP_COST: f64 = 2.0;
@@ -51,16 +56,26 @@ impl<'s> Accel<'s> {
     /// Builds the hierarchy.
     pub fn new(primitives: &'s [Primitive]) -> Accel<'s> {
         let mut items = Vec::new();
-        let mut unbounded = Vec::new();
+        let mut always = Vec::new();
         for (id, primitive) in (0..).zip(primitives) {
             match primitive.shape.bounds() {
                 Some(bounds) if bounds.min.is_finite() && bounds.max.is_finite() => {
                     items.push(Item { id, bounds: padded(bounds) });
                 }
-                _ => unbounded.push(id),
+                _ => always.push(id),
             }
         }
-        let mut accel = Accel { primitives, nodes: Vec::new(), order: Vec::new(), unbounded };
+        let whole = items.iter().fold(Bounds::EMPTY, |sum, item| sum.union(item.bounds));
+        let few = items.len() <= FEW;
+        items.retain(|item: &Item| {
+            let large = few || item.bounds.half_area() >= LARGE * whole.half_area();
+            if large {
+                always.push(item.id);
+            }
+            !large
+        });
+        always.sort_unstable();
+        let mut accel = Accel { primitives, nodes: Vec::new(), order: Vec::new(), always };
         if !items.is_empty() {
             accel.build(&mut items, 0);
         }
@@ -117,7 +132,7 @@ impl<'s> Accel<'s> {
             let (t, face) = intersect(&self.primitives[id as usize].shape, ray, start)?;
             Some(meet(Hit { t, place: Place { primitive, face } }))
         };
-        for &id in &self.unbounded {
+        for &id in &self.always {
             if let Some(answer) = test(id) {
                 let Some(nearer) = answer else { return };
                 limit = nearer;

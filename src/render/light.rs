@@ -142,6 +142,10 @@ impl Lights {
 
     /// Sum of the estimates of what each light gives, for [`Lights::choose`] and [`Lights::probability`].
     pub fn total(&self, receiver: &Receiver) -> f64 {
+        // Between one there is no choice, and nothing to estimate.
+        if self.lamps.len() == 1 {
+            return 0.0;
+        }
         self.lamps.iter().map(|lamp| lamp.estimate(receiver)).sum()
     }
 

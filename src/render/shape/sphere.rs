@@ -13,15 +13,18 @@ pub(super) fn intersect(center: DVec3, radius: f64, ray: &Ray, on_it: bool) -> O
     if on_it {
         return (b > 0.0).then_some(2.0 * b);
     }
+    let product = o.length_squared() - radius * radius;
+    // From outside, a sphere whose centre lies behind is never met: both roots have the sign of b.
+    if product > 0.0 && b <= 0.0 {
+        return None;
+    }
     let offset = o + b * ray.direction;
     let discriminant = radius * radius - offset.length_squared();
     if discriminant < 0.0 {
         return None;
     }
-    let product = o.length_squared() - radius * radius;
     let larger = b + discriminant.sqrt().copysign(b);
-    let smaller = product / larger;
-    let (near, far) = if b < 0.0 { (larger, smaller) } else { (smaller, larger) };
-    let t = if near > 0.0 { near } else { far };
+    // From inside, the roots have opposite signs; the greater one is positive.
+    let t = if product < 0.0 && b >= 0.0 { larger } else { product / larger };
     (t > 0.0).then_some(t)
 }
