@@ -26,6 +26,10 @@ const STEPS: &[(&str, Step)] = &[
 ];
 
 const USAGE: &str = "\
+cargo xtask gallery
+
+  makes the pictures of docs/gallery anew, in about ten minutes on two cores
+
 cargo xtask e2e [STEP…]
 
   terminal   progress on a pseudo-terminal, and Ctrl-C within 100 ms
@@ -50,6 +54,7 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let ended = match arguments.split_first() {
         Some((task, steps)) if task == "e2e" => e2e(steps),
+        Some((task, [])) if task == "gallery" => gallery(),
         _ => Err(USAGE.into()),
     };
     match ended {
@@ -65,8 +70,7 @@ fn e2e(wanted: &[String]) -> Outcome {
     if let Some(unknown) = wanted.iter().find(|name| STEPS.iter().all(|(known, _)| known != name)) {
         return Err(format!("no step `{unknown}`\n\n{USAGE}"));
     }
-    let root =
-        Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("xtask has no parent folder")?.to_path_buf();
+    let root = root()?;
     run(Command::new("cargo").args(["build", "--quiet", "--bin", "rtc"]).current_dir(&root))?;
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
     let mut failed = vec![];
@@ -85,6 +89,43 @@ fn e2e(wanted: &[String]) -> Outcome {
         }
     }
     if failed.is_empty() { Ok(()) } else { Err(format!("e2e failed: {}", failed.join(", "))) }
+}
+
+/// Makes the pictures that the README shows.
+fn gallery() -> Outcome {
+    let root = root()?;
+    let mut scenes = vec![root.join("examples/three-balls.rt")];
+    let report =
+        fs::read_dir(root.join("examples/report")).map_err(|error| format!("examples/report: {error}"))?;
+    scenes.extend(
+        report.flatten().map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "rt")),
+    );
+    for scene in scenes {
+        let name = scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let size = if name == "three-balls" { "480x360" } else { "320x240" };
+        let picture = root.join("docs/gallery").join(format!("{name}.png"));
+        let mut build = Command::new("cargo");
+        build.args([
+            "run",
+            "--quiet",
+            "--release",
+            "--bin",
+            "rtc",
+            "--",
+            "build",
+            "--size",
+            size,
+            "--samples",
+            "256",
+        ]);
+        run(build.arg(&scene).arg("-o").arg(picture).current_dir(&root))?;
+    }
+    Ok(())
+}
+
+/// The folder of the repository.
+fn root() -> Result<PathBuf, String> {
+    Ok(Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("xtask has no parent folder")?.to_path_buf())
 }
 
 /// Empties a folder, or makes it.

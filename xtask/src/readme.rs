@@ -18,7 +18,12 @@ pub fn commands(place: &Place) -> Outcome {
     // Kept between runs, so that only what changed is compiled; the desk is emptied.
     let target = place.desk.with_file_name("readme-target");
     let mut shell = Command::new("bash");
-    shell.args(["-euxo", "pipefail", "-c", &script]).current_dir(&clone).env("CARGO_TARGET_DIR", target);
+    // The first command builds `rtc`; those behind it find it as if it were installed.
+    let known = std::env::var_os("PATH").unwrap_or_default();
+    let folders = std::iter::once(target.join("release")).chain(std::env::split_paths(&known));
+    let path = std::env::join_paths(folders).map_err(|error| format!("PATH: {error}"))?;
+    shell.args(["-euxo", "pipefail", "-c", &script]).current_dir(&clone);
+    shell.env("CARGO_TARGET_DIR", target).env("PATH", path);
     run(&mut shell)
 }
 
