@@ -119,3 +119,37 @@ fn permissions_are_the_usual_ones_and_links_stay() {
     assert!(fs::symlink_metadata(desk.path("link.png")).unwrap().is_symlink());
     assert_same(&desk.path("a.png"), &desk.path("link.png"));
 }
+
+#[test]
+fn a_noise_target_is_met_or_the_warning_says_it_is_not() {
+    let desk = Desk::new();
+    let scene = |noise: &str| {
+        let light = "light { at: (2, 3, 2)m, radius: 1m, power: 60W }";
+        format!("sphere {{ radius: 1m }}\n{light}\nrender {{ size: (3, 2), noise: {noise} }}\n")
+    };
+    desk.put("calm.rt", scene("5%"));
+    let met = desk.run("build calm.rt");
+    met.expect(0, &["calm.png: 3×2", "noise"]);
+    assert!(!met.stderr.contains("W0701"), "{}", met.stderr);
+    desk.put("strict.rt", scene("0.00001%"));
+    desk.run("build strict.rt").expect(0, &["W0701 ⚠", "[strict.rt:3:31]", "65536 samples", "strict.png"]);
+    desk.run("build strict.rt --samples 4 --quiet").expect(0, &[]);
+}
+
+#[test]
+fn two_halves_side_by_side_are_the_picture_of_figure_10() {
+    let desk = Desk::new();
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/report/figure-10-parallel.rt");
+    desk.put("parallel.rt", fs::read(scene).unwrap());
+    let build = |rest: &str| {
+        desk.run(&format!("build parallel.rt --size 32x24 --samples 2 {rest}")).expect(0, &[]);
+    };
+    build("-o whole.png");
+    build("--crop 0,0,16,24 -o left.png");
+    build("--crop 16,0,16,24 -o right.png");
+    let whole = read_png(&desk.get("whole.png")).1;
+    let [left, right] = ["left.png", "right.png"].map(|half| read_png(&desk.get(half)).1);
+    let rows = left.chunks(16 * 3).zip(right.chunks(16 * 3));
+    let together: Vec<u8> = rows.flat_map(|(left, right)| [left, right].concat()).collect();
+    assert!(together == whole);
+}
