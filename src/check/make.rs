@@ -273,7 +273,7 @@ fn broken_rule(kind: KindId, given: FieldSet, place: Span) -> Option<Diagnostic>
         return None;
     }
     let beside = rules.iter().find_map(|rule| match rule {
-        Rule::Together(names) if names.iter().any(|name| has(name)) => {
+        Rule::Together(names) if names.iter().any(has) => {
             let missing = names.iter().find(|name| !has(name))?;
             Some(errors::missing_beside(kind, missing, names, place))
         }
@@ -284,7 +284,7 @@ fn broken_rule(kind: KindId, given: FieldSet, place: Span) -> Option<Diagnostic>
     });
     let one_of = || {
         rules.iter().find_map(|rule| match rule {
-            Rule::ExactlyOne(names) if !names.iter().any(|name| has(name)) => {
+            Rule::ExactlyOne(names) if !names.iter().any(has) => {
                 Some(errors::missing_one_of(kind, names, place))
             }
             _ => None,

@@ -215,15 +215,24 @@ impl Checker<'_> {
         color::named(name).map(|color| (ExprKind::Color(color), Type::Color))
     }
 
+    /// The scopes whose names can be compared with one more unknown name.
+    fn comparable(&self) -> &[Scope] {
+        let count = self.scopes.iter().map(|scope| scope.slots.len()).sum();
+        let left = self.guesses.get().checked_sub(count);
+        self.guesses.set(left.unwrap_or(0));
+        if left.is_some() { &self.scopes } else { &[] }
+    }
+
     /// Names in scope that may stand for a value, for suggestions.
     pub(super) fn value_names(&self) -> Vec<&str> {
-        let declared = self.scopes.iter().flat_map(|scope| scope.slots.keys().map(SmolStr::as_str));
+        let scopes = self.comparable().iter();
+        let declared = scopes.flat_map(|scope| scope.slots.keys().map(SmolStr::as_str));
         declared.chain(color::NAMED.iter().map(|(name, _)| *name)).collect()
     }
 
     /// Names that may stand before `{`, for suggestions.
     pub(super) fn kind_names(&self) -> Vec<&str> {
-        let prototypes = self.scopes.iter().flat_map(|scope| {
+        let prototypes = self.comparable().iter().flat_map(|scope| {
             let made =
                 scope.slots.iter().filter(|(_, slot)| matches!(scope.bindings[**slot].ty, Type::Made(..)));
             made.map(|(name, _)| name.as_str())
