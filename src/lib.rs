@@ -68,6 +68,10 @@ pub fn compile(sources: &Sources, id: SourceId, overrides: &Overrides) -> Compil
     let (tree, mut diagnostics) = syntax::parse(id, text);
     let (program, found) = check::check(&tree, text);
     diagnostics.extend(found);
+    if diagnostic::any_errors(&diagnostics) {
+        // What could not be understood may use any name.
+        diagnostics.retain(|diagnostic| diagnostic.code != Code::W0106);
+    }
     let (things, found) = eval::eval(&program);
     diagnostics.extend(found);
     let lowered = lower::lower(&things, overrides);

@@ -579,7 +579,7 @@ kinds! {
         /// and glass.
         INDIRECT "indirect": Bool = Value("true"), ANY;
         /// Chooses the random numbers.
-        SEED "seed": Int = Value("0"), within(0.0, 9_007_199_254_740_992.0);
+        SEED "seed": Int = Value("0"), within(0.0, 9_007_199_254_740_991.0);
         /// Which camera takes the picture, where there are several.
         CAMERA "camera": CameraName = Absent("the only one"), ANY;
         /// The curve from scene to display.

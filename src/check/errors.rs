@@ -4,14 +4,18 @@ use super::functions::Function;
 use super::make::suggested_unit;
 use super::types::{Element, Type, describe_wanted, list};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::schema::{Field, FieldType, KindId, Preset, Word};
+use crate::schema::{Category, Field, FieldType, KindId, Preset, Word};
 use crate::span::Span;
 use crate::syntax::ast::{Keyword, Name};
 use crate::units::{self, Dim};
 
-/// The candidate that is probably meant: at most a third of the letters away.
+/// The candidate that is probably meant: at most a third of the letters away. Of a name of one letter another
+/// letter says nothing.
 pub(super) fn closest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
-    let limit = (name.chars().count() / 3).max(1);
+    let limit = match name.chars().count() {
+        0 | 1 => 0,
+        count => (count / 3).max(1),
+    };
     let lower = name.to_lowercase();
     candidates
         .iter()
@@ -71,29 +75,41 @@ pub(super) fn built_in(name: &Name, what: &str) -> Diagnostic {
         .help(format!("choose another name, such as `my_{}`", name.text))
 }
 
+/// The most names of a cycle that are shown.
+const MAX_CYCLE: usize = 8;
+
 pub(super) fn cycle(names: &[&Name]) -> Diagnostic {
     let Some(first) = names.first() else {
         unreachable!("only what has a name can be used, and so lie on a cycle")
     };
-    let path: Vec<String> = names.iter().chain([first]).map(|name| format!("`{}`", name.text)).collect();
-    let message = match names.len() {
-        1 => format!("`{}` is defined by itself", first.text),
-        _ => format!(
-            "{} are defined by each other",
-            quoted(&names.iter().map(|n| &*n.text).collect::<Vec<_>>())
-        ),
+    let shown = &names[..names.len().min(MAX_CYCLE)];
+    let mut path: Vec<String> = shown.iter().map(|name| format!("`{}`", name.text)).collect();
+    let message = match names.len() - shown.len() {
+        0 if names.len() == 1 => format!("`{}` is defined by itself", first.text),
+        0 => format!("{} are defined by each other", list(path.clone(), "and")),
+        more => format!("{} and {more} more are defined by each other", path.join(", ")),
     };
+    if shown.len() < names.len() {
+        path.push("…".into());
+    }
+    path.push(format!("`{}`", first.text));
     let mut diagnostic = Diagnostic::new(Code::E0104, message, first.span).at("the cycle begins here");
-    for pair in names.windows(2) {
+    for pair in shown.windows(2) {
         diagnostic = diagnostic.label(pair[1].span, format!("used by `{}`", pair[0].text));
     }
     diagnostic.help(format!("break the cycle {}", path.join(" → ")))
 }
 
-pub(super) fn unused(name: &Name) -> Diagnostic {
+pub(super) fn unused(name: &Name, ty: Type) -> Diagnostic {
+    let drawn = match ty {
+        Type::Made(kind, _) if kind.get().category != Category::Material => {
+            format!("; a prototype is drawn by `{} {{}}`", name.text)
+        }
+        _ => String::new(),
+    };
     Diagnostic::new(Code::W0106, format!("`{}` is never used", name.text), name.span)
         .at("declared here")
-        .help(format!("use it, or remove it; a prototype is drawn by `{} {{}}`", name.text))
+        .help(format!("use it, or remove it{drawn}"))
 }
 
 pub(super) fn wrong_keyword(keyword: Keyword, name: &Name, value: Span, ty: Type) -> Diagnostic {
@@ -149,9 +165,20 @@ pub(super) fn block_inside(name: &Name, kind: KindId) -> Diagnostic {
 }
 
 pub(super) fn cannot_hold(name: &Name, outer: KindId) -> Diagnostic {
+    let help = match outer.get().category {
+        Category::Shape | Category::Light => "put both into a `group { … }`".to_string(),
+        _ => format!("end the `{}` before it", outer.get().name),
+    };
     Diagnostic::new(Code::E0301, format!("`{}` cannot hold things", outer.get().name), name.span)
         .at(format!("`{}` does not belong inside", name.text))
-        .help("put both into a `group { … }`")
+        .help(help)
+}
+
+pub(super) fn named_part(kind: &Name, name: &Name, outer: KindId) -> Diagnostic {
+    let message = format!("the `{}` of a `{}` has no name", kind.text, outer.get().name);
+    Diagnostic::new(Code::E0301, message, name.span)
+        .at("a name here")
+        .help(format!("write `{} {{ … }}`", kind.text))
 }
 
 pub(super) fn unknown_field(kind: KindId, name: &Name, free: &[&str], all: &[&str]) -> Diagnostic {

@@ -7,7 +7,6 @@ use crate::diagnostic::Code;
 use crate::span::Span;
 use crate::syntax::ast::{self, BinaryOp, ExprKind as Tree, Name, UnaryOp};
 use crate::units::{self, Dim};
-use smol_str::SmolStr;
 
 impl Checker<'_> {
     /// Finds the type of an expression, wherever it stands.
@@ -40,13 +39,8 @@ impl Checker<'_> {
                 Some(found) => found,
                 None => {
                     let name = Name { text: name.clone(), span };
-                    let (diagnostic, guess) = {
-                        let names = self.value_names();
-                        let guess = errors::closest(&name.text, &names).map(SmolStr::new);
-                        (errors::unknown(Code::E0101, "name", &name, &names), guess)
-                    };
+                    let diagnostic = errors::unknown(Code::E0101, "name", &name, &self.value_names());
                     self.report(diagnostic);
-                    self.count_as_used(guess);
                     (ExprKind::Invalid, Type::Invalid)
                 }
             },

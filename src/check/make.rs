@@ -1,7 +1,8 @@
 //! Things: their kind, their fields, and what must hold between these.
 
 use super::types::{Element, FieldSet, Type};
-use super::{Checker, Expr, ExprKind, Make, errors, scope::Item};
+use super::{Base, Checker, Expr, ExprKind, Make, errors, scope::Item};
+use crate::diagnostic::Diagnostic;
 use crate::schema::{Category, Field, FieldType, KindId, Preset, Rule};
 use crate::span::Span;
 use crate::syntax::ast::{self, Entry, ExprKind as Tree, Name, Statement};
@@ -25,7 +26,8 @@ impl Checker<'_> {
     pub(super) fn make(&mut self, construct: &ast::Construct) -> (Make, Type) {
         let (base, known) = self.kind_of(&construct.kind);
         let holds = known.is_some_and(|(kind, _)| kind.get().category == Category::Group);
-        let (items, parts) = self.sort_entries(&construct.body.entries, known.map(|(kind, _)| kind), holds);
+        let Sorted { items, parts, misplaced } =
+            self.sort_entries(&construct.body.entries, known.map(|(kind, _)| kind), holds);
         let block = (!items.is_empty()).then(|| self.open(&items, false));
         let mut make = Make { base, fields: vec![], block, span: construct.span };
         let ty = match known {
@@ -45,29 +47,28 @@ impl Checker<'_> {
                 Type::Invalid
             }
         };
+        for construct in misplaced {
+            self.make(construct);
+        }
         if make.block.is_some() {
             self.close();
         }
-        (make, ty)
+        match make.base {
+            Base::Invalid => (make, Type::Invalid),
+            _ => (make, ty),
+        }
     }
 
     /// Splits the statements of a body: definitions and members on the one hand, things that are fields (a
     /// lens in its camera) on the other.
-    fn sort_entries<'t>(
-        &mut self,
-        entries: &'t [Entry],
-        kind: Option<KindId>,
-        holds: bool,
-    ) -> (Vec<Item<'t>>, Vec<(usize, &'t ast::Construct)>) {
-        let mut items = vec![];
-        let mut parts = vec![];
+    fn sort_entries<'t>(&mut self, entries: &'t [Entry], kind: Option<KindId>, holds: bool) -> Sorted<'t> {
+        let Sorted { mut items, mut parts, mut misplaced } = Sorted::default();
         for entry in entries {
             let Entry::Statement(statement) = entry else {
                 // A broken entry with the name of a field is that field.
                 if let Entry::Broken(broken) = entry
                     && let Some(name) = &broken.name
                     && kind.is_none_or(|kind| kind.field_index(&name.text).is_none())
-                    && holds
                 {
                     items.push(Item::Broken(broken));
                 }
@@ -76,24 +77,32 @@ impl Checker<'_> {
             match &**statement {
                 Statement::Thing { construct, name } if !holds => {
                     let field = kind.and_then(|kind| self.part_field(kind, &construct.kind));
-                    match (field, name) {
-                        (Some(index), None) => parts.push((index, construct)),
-                        _ => {
-                            if let Some(kind) = kind {
-                                self.report(errors::cannot_hold(&construct.kind, kind));
-                            }
+                    match (kind, field, name) {
+                        (_, Some(index), None) => parts.push((index, construct)),
+                        (Some(kind), Some(index), Some(name)) => {
+                            self.report(errors::named_part(&construct.kind, name, kind));
+                            parts.push((index, construct));
                         }
+                        (Some(kind), None, _) => {
+                            self.report(errors::cannot_hold(&construct.kind, kind));
+                            misplaced.push(construct);
+                        }
+                        (None, ..) => {}
                     }
                 }
                 statement => items.push(Item::Statement(statement)),
             }
         }
-        (items, parts)
+        Sorted { items, parts, misplaced }
     }
 
-    /// The field of `kind` that a statement of this kind inside fills.
-    fn part_field(&self, kind: KindId, inner: &Name) -> Option<usize> {
-        kind.fields().position(|field| matches!(field.ty, FieldType::Part(part) if part == inner.text))
+    /// The field of `kind` that a statement of this kind, or of a prototype of it, inside fills.
+    fn part_field(&mut self, kind: KindId, inner: &Name) -> Option<usize> {
+        let inner = match self.lookup(&inner.text) {
+            Some((_, Type::Made(kind, _))) => kind.get().name,
+            _ => &inner.text,
+        };
+        kind.fields().position(|field| matches!(field.ty, FieldType::Part(part) if part == inner))
     }
 
     fn fields(
@@ -112,27 +121,32 @@ impl Checker<'_> {
                 _ => continue,
             };
             let Some(index) = kind.field_index(&name.text) else {
-                if let Some(value) = value {
-                    let guess = self.unknown_field(kind, name, &places);
-                    // A misspelt field counts as given.
-                    if let Some(index) = guess {
-                        places[index].get_or_insert(name.span);
-                    }
-                    if !matches!(value.kind, Tree::Name(_)) {
-                        self.infer(value);
-                    }
+                if value.is_some() {
+                    self.unknown_field(kind, name, &places);
+                }
+                // A misspelt field counts as given.
+                if let Some(index) = probable_field(kind, name, &places) {
+                    places[index] = Some(name.span);
+                    make.fields.push((index, Expr::invalid(name.span)));
+                }
+                if let Some(value) = value.filter(|value| !matches!(value.kind, Tree::Name(_))) {
+                    self.infer(value);
                 }
                 continue;
             };
             if let Some(first) = places[index] {
                 self.report(errors::repeated(name, first));
+                if let Some(value) = value {
+                    self.field_value(kind.field(index), value);
+                }
                 continue;
             }
             places[index] = Some(name.span);
-            if let Some(value) = value {
-                let checked = self.field_value(kind.field(index), value);
-                make.fields.push((index, checked));
-            }
+            let checked = match value {
+                Some(value) => self.field_value(kind.field(index), value),
+                None => Expr::invalid(name.span),
+            };
+            make.fields.push((index, checked));
         }
         for (index, construct) in parts {
             if let Some(first) = places[*index] {
@@ -157,14 +171,9 @@ impl Checker<'_> {
         given
     }
 
-    /// Reports an unknown field, and gives the one probably meant.
-    fn unknown_field(&mut self, kind: KindId, name: &Name, places: &[Option<Span>]) -> Option<usize> {
-        let free = kind.fields().enumerate().filter(|(index, _)| places[*index].is_none());
-        let names: Vec<&str> = free.map(|(_, field)| field.name).collect();
+    fn unknown_field(&mut self, kind: KindId, name: &Name, places: &[Option<Span>]) {
         let all: Vec<&str> = kind.fields().map(|field| field.name).collect();
-        let diagnostic = errors::unknown_field(kind, name, &names, &all);
-        self.report(diagnostic);
-        errors::closest(&name.text, &names).and_then(|guess| kind.field_index(guess))
+        self.report(errors::unknown_field(kind, name, &free_fields(kind, places), &all));
     }
 
     /// Fields that exclude each other. Reported where this body gives at least one of them.
@@ -196,22 +205,8 @@ impl Checker<'_> {
                 self.report(errors::missing(kind, field, place));
             }
         }
-        let has = |name: &str| kind.field_index(name).is_some_and(|index| given.has(index));
-        for rule in kind.get().rules {
-            match *rule {
-                Rule::ExactlyOne(names) if !names.iter().any(|name| has(name)) => {
-                    self.report(errors::missing_one_of(kind, names, place));
-                }
-                Rule::Together(names) if names.iter().any(|name| has(name)) => {
-                    for missing in names.iter().filter(|name| !has(name)) {
-                        self.report(errors::missing_beside(kind, missing, names, place));
-                    }
-                }
-                Rule::Needs(one, other) if has(one) && !has(other) => {
-                    self.report(errors::missing_beside(kind, other, &[one], place));
-                }
-                _ => {}
-            }
+        if let Some(diagnostic) = broken_rule(kind, given, place) {
+            self.report(diagnostic);
         }
     }
 
@@ -242,6 +237,60 @@ impl Checker<'_> {
         }
         checked
     }
+}
+
+/// The names of the fields that are not given yet.
+fn free_fields(kind: KindId, places: &[Option<Span>]) -> Vec<&'static str> {
+    let free = kind.fields().zip(places).filter(|(_, place)| place.is_none());
+    free.map(|(field, _)| field.name).collect()
+}
+
+/// The field that an unknown name probably means.
+fn probable_field(kind: KindId, name: &Name, places: &[Option<Span>]) -> Option<usize> {
+    errors::closest(&name.text, &free_fields(kind, places)).and_then(|guess| kind.field_index(guess))
+}
+
+/// The statements of a body by what they are.
+#[derive(Default)]
+struct Sorted<'t> {
+    /// Definitions, and members of a group.
+    items: Vec<Item<'t>>,
+    /// Things that are fields, each with the field's index.
+    parts: Vec<(usize, &'t ast::Construct)>,
+    /// Things that do not belong here, which was reported.
+    misplaced: Vec<&'t ast::Construct>,
+}
+
+/// What a rule misses beside the fields that are given. What lacks one field may break several rules: the one
+/// that says most is said.
+fn broken_rule(kind: KindId, given: FieldSet, place: Span) -> Option<Diagnostic> {
+    let has = |name: &&str| kind.field_index(name).is_some_and(|index| given.has(index));
+    let rules = kind.get().rules;
+    let conflict = rules
+        .iter()
+        .any(|rule| matches!(rule, Rule::Excludes(one, others) if has(one) && others.iter().any(has)));
+    if conflict {
+        return None;
+    }
+    let beside = rules.iter().find_map(|rule| match rule {
+        Rule::Together(names) if names.iter().any(has) => {
+            let missing = names.iter().find(|name| !has(name))?;
+            Some(errors::missing_beside(kind, missing, names, place))
+        }
+        Rule::Needs(one, other) if has(one) && !has(other) => {
+            Some(errors::missing_beside(kind, other, &[one], place))
+        }
+        _ => None,
+    });
+    let one_of = || {
+        rules.iter().find_map(|rule| match rule {
+            Rule::ExactlyOne(names) if !names.iter().any(has) => {
+                Some(errors::missing_one_of(kind, names, place))
+            }
+            _ => None,
+        })
+    };
+    beside.or_else(one_of)
 }
 
 /// Whether a value of a type can stand in a field.
@@ -276,7 +325,7 @@ fn words(ty: FieldType) -> Vec<&'static str> {
     }
 }
 
-fn find_word(ty: FieldType, name: &str) -> Option<&'static str> {
+pub(super) fn find_word(ty: FieldType, name: &str) -> Option<&'static str> {
     words(ty).into_iter().find(|word| *word == name)
 }
 

@@ -20,6 +20,7 @@ use crate::schema::KindId;
 use crate::span::Span;
 use crate::syntax::ast::{self, BinaryOp, UnaryOp};
 use smol_str::SmolStr;
+use std::cell::Cell;
 
 /// A checked file.
 #[derive(Debug)]
@@ -167,11 +168,17 @@ struct Checker<'a> {
     /// Innermost last.
     scopes: Vec<scope::Scope>,
     diagnostics: Vec<Diagnostic>,
+    /// How many declared names may still be compared with unknown ones.
+    guesses: Cell<usize>,
 }
+
+/// The most comparisons of unknown names with declared ones; beyond, only built-in names are suggested. It keeps
+/// the time in bounds where thousands of names are unknown.
+const MAX_GUESSES: usize = 1_000_000;
 
 impl<'a> Checker<'a> {
     fn new(text: &'a str) -> Checker<'a> {
-        Checker { text, scopes: vec![], diagnostics: vec![] }
+        Checker { text, scopes: vec![], diagnostics: vec![], guesses: Cell::new(MAX_GUESSES) }
     }
 
     fn report(&mut self, diagnostic: Diagnostic) {

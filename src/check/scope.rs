@@ -1,5 +1,6 @@
 //! Names: who declares them, in which order they can be evaluated, and whether they are used.
 
+use super::make::find_word;
 use super::{Binding, Block, Checker, Expr, ExprKind, Type, errors, functions, types::FieldSet};
 use crate::diagnostic::Code;
 use crate::schema;
@@ -90,7 +91,6 @@ impl Checker<'_> {
         for cycle in cycles {
             let names: Vec<&Name> = cycle.iter().filter_map(|&slot| items[slot].name()).collect();
             self.report(errors::cycle(&names));
-            names.iter().for_each(|name| self.count_as_used(Some(name.text.clone())));
         }
         let mut bindings: Vec<Option<Binding>> = items.iter().map(|_| None).collect();
         for &slot in &order {
@@ -122,7 +122,7 @@ impl Checker<'_> {
                 && !known.used
                 && !known.drawn
             {
-                self.report(errors::unused(name));
+                self.report(errors::unused(name, known.ty));
             }
         }
     }
@@ -135,20 +135,15 @@ impl Checker<'_> {
         let mut scope = Scope { slots: BTreeMap::new(), bindings: vec![] };
         for (slot, item) in items.iter().enumerate() {
             let mut known = Known { name: None, ty: Type::Invalid, used: false, drawn: item.drawn() };
-            // A broken item's name counts as declared and as used, so that its slip is one error.
-            known.used = matches!(item, Item::Broken(_));
-            if let Some(name) = item.name() {
+            if let (Item::Statement(_), Some(name)) = (item, item.name()) {
                 match scope.slots.get(&name.text) {
                     Some(&first) => {
                         let first = scope.bindings[first].name.clone();
                         self.report(errors::duplicate(name, first.as_ref()));
-                        known.used = true;
                     }
                     None => {
                         if let Some(diagnostic) = self.shadows(name) {
                             self.report(diagnostic);
-                            self.count_as_used(Some(name.text.clone()));
-                            known.used = true;
                         }
                         scope.slots.insert(name.text.clone(), slot);
                     }
@@ -156,6 +151,14 @@ impl Checker<'_> {
                 known.name = Some(name.clone());
             }
             scope.bindings.push(known);
+        }
+        // A broken item's name counts as declared where nothing else declares it: its slip is one error.
+        for (slot, item) in items.iter().enumerate() {
+            if let (Item::Broken(_), Some(name)) = (item, item.name())
+                && self.shadows(name).is_none()
+            {
+                scope.slots.entry(name.text.clone()).or_insert(slot);
+            }
         }
         scope
     }
@@ -212,22 +215,24 @@ impl Checker<'_> {
         color::named(name).map(|color| (ExprKind::Color(color), Type::Color))
     }
 
-    /// A name that was probably meant is not unused as well: one slip is one message.
-    pub(super) fn count_as_used(&mut self, name: Option<SmolStr>) {
-        if let Some(name) = name {
-            self.lookup(&name);
-        }
+    /// The scopes whose names can be compared with one more unknown name.
+    fn comparable(&self) -> &[Scope] {
+        let count = self.scopes.iter().map(|scope| scope.slots.len()).sum();
+        let left = self.guesses.get().checked_sub(count);
+        self.guesses.set(left.unwrap_or(0));
+        if left.is_some() { &self.scopes } else { &[] }
     }
 
     /// Names in scope that may stand for a value, for suggestions.
     pub(super) fn value_names(&self) -> Vec<&str> {
-        let declared = self.scopes.iter().flat_map(|scope| scope.slots.keys().map(SmolStr::as_str));
+        let scopes = self.comparable().iter();
+        let declared = scopes.flat_map(|scope| scope.slots.keys().map(SmolStr::as_str));
         declared.chain(color::NAMED.iter().map(|(name, _)| *name)).collect()
     }
 
     /// Names that may stand before `{`, for suggestions.
     pub(super) fn kind_names(&self) -> Vec<&str> {
-        let prototypes = self.scopes.iter().flat_map(|scope| {
+        let prototypes = self.comparable().iter().flat_map(|scope| {
             let made =
                 scope.slots.iter().filter(|(_, slot)| matches!(scope.bindings[**slot].ty, Type::Made(..)));
             made.map(|(name, _)| name.as_str())
@@ -250,14 +255,12 @@ impl Checker<'_> {
                 (super::Base::Invalid, None)
             }
             None => {
-                let (diagnostic, guess) = {
-                    let names = self.kind_names();
-                    let guess = errors::closest(&name.text, &names).map(SmolStr::new);
-                    (errors::unknown(Code::E0101, "kind", name, &names), guess)
-                };
+                let diagnostic = errors::unknown(Code::E0101, "kind", name, &self.kind_names());
                 self.report(diagnostic);
-                self.count_as_used(guess);
-                (super::Base::Invalid, None)
+                // What stands inside is looked at as if the kind had been spelt right.
+                let built_in: Vec<&str> = schema::KINDS.iter().map(|kind| kind.name).collect();
+                let guess = errors::closest(&name.text, &built_in).and_then(schema::kind);
+                (super::Base::Invalid, guess.map(|kind| (kind, FieldSet::default())))
             }
         }
     }
@@ -288,6 +291,7 @@ fn names_in_construct(construct: &ast::Construct, visit: &mut impl FnMut(&str)) 
     visit(&construct.kind.text);
     for entry in &construct.body.entries {
         match entry {
+            Entry::Field(field) if is_word(field) => {}
             Entry::Field(field) => names_in(&field.value, visit),
             Entry::Statement(statement) => match &**statement {
                 Statement::Thing { construct, .. } => names_in_construct(construct, visit),
@@ -296,6 +300,14 @@ fn names_in_construct(construct: &ast::Construct, visit: &mut impl FnMut(&str)) 
             Entry::Broken(_) => {}
         }
     }
+}
+
+/// Whether a field's value is a word that the field understands, and so no name. The kind may be a prototype's,
+/// which is not known yet: fields of one name understand the same words in every kind.
+fn is_word(field: &ast::Field) -> bool {
+    let Tree::Name(word) = &field.value.kind else { return false };
+    let fields = schema::KINDS.iter().flat_map(|kind| kind.fields);
+    fields.filter(|known| known.name == field.name.text).any(|known| find_word(known.ty, word).is_some())
 }
 
 fn names_in(expr: &ast::Expr, visit: &mut impl FnMut(&str)) {

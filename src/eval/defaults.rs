@@ -33,8 +33,7 @@ fn evaluate(field: &'static Field) -> Value {
     // The place is never shown: a test holds that no default has an error.
     let (tree, _) = syntax::parse_expression(SourceId(u32::MAX), text);
     let (expr, _) = check::check_value(field, &tree, text);
-    let mut evaluator = Evaluator { frames: vec![], diagnostics: vec![], defaults: Defaults::new(), made: 0 };
-    evaluator.expr(&expr)
+    Evaluator::new().expr(&expr)
 }
 
 #[cfg(test)]

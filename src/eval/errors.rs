@@ -14,6 +14,15 @@ fn show(x: f64) -> String {
     if size != 0.0 && !(1e-4..1e7).contains(&size) { format!("{x:e}") } else { format!("{x}") }
 }
 
+/// A quantity in the unit that a writer would reach for, to twelve digits: less than conversions leave.
+fn show_quantity(x: f64, dim: Dim) -> String {
+    let unit = dim.example_unit();
+    let factor = units::parse_unit(&unit).map_or(1.0, |unit| unit.factor);
+    let rounded =
+        if factor == 1.0 { x } else { format!("{:.11e}", x / factor).parse().unwrap_or(x / factor) };
+    format!("{}{unit}", show(rounded))
+}
+
 fn show_value(value: &Value) -> String {
     match value {
         Value::Number(x) => show(*x),
@@ -34,7 +43,7 @@ pub(super) fn out_of_range(kind: KindId, field: &Field, value: &Value, span: Spa
     };
     let bad = parts.into_iter().find(|part| !field.range.contains(*part))?;
     let dim = dimension(field.ty);
-    let shown = format!("{}{}", show(bad), dim.example_unit());
+    let shown = show_quantity(bad, dim);
     let allowed = allowed(field.ty, field.range);
     if field.ty == FieldType::Color && bad > field.range.high {
         let message = format!("this `{}` reflects more than it receives", kind.get().name);
@@ -59,7 +68,7 @@ fn dimension(ty: FieldType) -> Dim {
 fn allowed(ty: FieldType, range: Range) -> String {
     let dim = dimension(ty);
     // Nothing is nothing in any unit.
-    let with_unit = |x: f64| if x == 0.0 { show(x) } else { format!("{}{}", show(x), dim.example_unit()) };
+    let with_unit = |x: f64| if x == 0.0 { show(x) } else { show_quantity(x, dim) };
     let (low, high) = (with_unit(range.low), with_unit(range.high));
     match (range.above, range.high == f64::INFINITY) {
         (true, true) => format!("above {low}"),

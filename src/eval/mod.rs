@@ -44,6 +44,10 @@ pub struct Things {
     pub origins: Origins,
     /// The values of fields that are not given.
     pub defaults: Defaults,
+    /// Whether something that was written is not among them, since it has an error.
+    pub incomplete: bool,
+    /// How many things and groups were added so far.
+    added: usize,
 }
 
 /// One thing of the picture: a shape, a light or a block.
@@ -63,11 +67,17 @@ pub struct Thing {
 
 /// Evaluates a program.
 pub fn eval(program: &Program) -> (Things, Vec<Diagnostic>) {
-    let mut evaluator = Evaluator { frames: vec![], diagnostics: vec![], defaults: Defaults::new(), made: 0 };
+    let mut evaluator = Evaluator::new();
     let members = evaluator.block(&program.block);
-    let Evaluator { mut diagnostics, defaults, .. } = evaluator;
-    let mut things =
-        Things { things: vec![], places: BTreeMap::new(), origins: Origins::default(), defaults };
+    let Evaluator { mut diagnostics, defaults, incomplete, .. } = evaluator;
+    let mut things = Things {
+        things: vec![],
+        places: BTreeMap::new(),
+        origins: Origins::default(),
+        defaults,
+        incomplete,
+        added: 0,
+    };
     let around = Around { placement: DAffine3::IDENTITY, material: None, origin: None };
     if let Err(diagnostic) = things.add_all(&members, &around) {
         diagnostics.push(*diagnostic);
@@ -83,9 +93,24 @@ struct Evaluator {
     defaults: Defaults,
     /// How many things were made: the next [`ThingId`].
     made: u32,
+    /// How many members the groups hold, prototypes and those made from them counted alike.
+    held: usize,
+    /// Whether a statement came to nothing.
+    incomplete: bool,
 }
 
 impl Evaluator {
+    fn new() -> Evaluator {
+        Evaluator {
+            frames: vec![],
+            diagnostics: vec![],
+            defaults: Defaults::new(),
+            made: 0,
+            held: 0,
+            incomplete: false,
+        }
+    }
+
     fn report(&mut self, diagnostic: Diagnostic) -> Value {
         self.diagnostics.push(diagnostic);
         Value::Invalid
@@ -113,6 +138,7 @@ impl Evaluator {
                 members.push((slot, Member { id, name: binding.name.clone(), made, span: binding.span }));
                 value = Value::Thing(id);
             }
+            self.incomplete |= value == Value::Invalid;
             if let Some(frame) = self.frames.last_mut() {
                 frame[slot] = value;
             }
@@ -145,8 +171,23 @@ impl Evaluator {
             self.frames.pop();
             made.levels = own.iter().map(|member| member.made.levels + 1).fold(made.levels, usize::max);
             if made.levels > MAX_LEVELS {
-                return self.report(errors::too_many_levels(make.span));
+                // Levels further out are too many as well, and nothing new.
+                if made.levels == MAX_LEVELS + 1 {
+                    self.report(errors::too_many_levels(make.span));
+                }
+                made.members = [].into();
+                return Value::Made(Rc::new(made));
             }
+            let before = self.held;
+            self.held += made.members.len() + own.len();
+            if self.held > MAX_THINGS {
+                if before <= MAX_THINGS {
+                    self.report(errors::too_many_things(make.span));
+                }
+                return Value::Invalid;
+            }
+            let inside = own.iter().map(|member| member.made.inside.saturating_add(1));
+            made.inside = inside.fold(made.inside, usize::saturating_add);
             let mut members = made.members.to_vec();
             members.extend(own);
             made.members = members.into();
@@ -177,9 +218,11 @@ impl Things {
     fn add(&mut self, member: &Member, around: &Around) -> Result<(), Box<Diagnostic>> {
         let made = &member.made;
         let first = self.things.len();
-        if first >= MAX_THINGS {
+        // Before anything is taken apart: groups within groups multiply.
+        if self.added.saturating_add(made.inside) >= MAX_THINGS {
             return Err(Box::new(errors::too_many_things(member.span)));
         }
+        self.added += 1;
         let mut origin = self.origins.add(member.span, around.origin);
         if let Some(proto) = made.proto {
             origin = self.origins.add(proto, Some(origin));
@@ -232,6 +275,7 @@ impl Made {
             proto: None,
             span,
             levels: 0,
+            inside: 0,
         }
     }
 }

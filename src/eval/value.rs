@@ -52,6 +52,8 @@ pub struct Made {
     pub span: Span,
     /// How many levels of groups it holds.
     pub(super) levels: usize,
+    /// How many things and groups it holds, those that are held by others included.
+    pub(super) inside: usize,
 }
 
 /// The value of a field, and where it was written.

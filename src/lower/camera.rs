@@ -48,6 +48,10 @@ impl Lowering<'_> {
                 position
             }
         };
+        if !(position.is_finite() && look.is_finite()) {
+            self.report(errors::beyond_view(made.span));
+            return None;
+        }
         let place = made.given(camera::FROM).map_or(made.span, |(_, span)| span);
         let Some(forward) = unit(look - position) else {
             let look_place = made.given(camera::LOOK).map(|(_, span)| span);
@@ -71,6 +75,7 @@ impl Lowering<'_> {
                 None
             }
             (Some((lens, _)), None) => Some(Some(lens)),
+            (None, Some(lens)) if !lens.made.is_sound() => None,
             (None, lens) => Some(lens.map(|thing| thing.made.clone())),
         }
     }
@@ -83,9 +88,14 @@ impl Lowering<'_> {
                 None
             }
             (Some((fov, _)), None) => Some(fov),
-            (None, Some((focal, _))) => {
+            (None, Some((focal, span))) => {
                 let sensor = self.things.read(lens?, lens::SENSOR);
-                Some(2.0 * atan2(sensor, 2.0 * focal))
+                let fov = 2.0 * atan2(sensor, 2.0 * focal);
+                if !camera::KIND.field(camera::FOV.index(camera::KIND)).range.contains(fov) {
+                    self.report(errors::too_wide(span));
+                    return None;
+                }
+                Some(fov)
             }
             (None, None) => Some(DEFAULT_FOV),
         }

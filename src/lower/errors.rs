@@ -2,6 +2,7 @@
 
 use super::MAX_PIXELS;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::schema::camera;
 use crate::span::{SourceId, Span};
 
 /// The beginning of the file, for what is missing from all of it.
@@ -19,6 +20,25 @@ pub(super) fn second(kind: &str, span: Span, first: Span) -> Diagnostic {
 pub(super) fn not_finite_place(span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0407, "the placements of this thing leave the numbers", span)
         .at("nowhere to be drawn")
+}
+
+pub(super) fn too_large(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0407, "this shape is too large to be computed with", span).at("not finite")
+}
+
+pub(super) fn beyond_view(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0407, "what the camera is to look at reaches too far to be computed with", span)
+        .at("not finite")
+        .help("bring the things nearer, or give the camera `from` and `look`")
+}
+
+pub(super) fn too_wide(focal: Span) -> Diagnostic {
+    let field = camera::KIND.field(camera::FOV.index(camera::KIND));
+    let widest = (field.range.high * 180.0 / std::f64::consts::PI).round();
+    let message = format!("this lens sees more than `{}: {widest}deg`, the widest view there is", field.name);
+    Diagnostic::new(Code::E0401, message, focal)
+        .at("too short for the sensor")
+        .help("give a longer `focal` or a smaller `sensor`")
 }
 
 pub(super) fn glows_beyond(span: Span) -> Diagnostic {
@@ -108,8 +128,8 @@ pub(super) fn up_along_view(span: Span) -> Diagnostic {
 }
 
 pub(super) fn no_middle(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0305, "this thing has no end, and so no middle", span)
-        .at("without bounds")
+    Diagnostic::new(Code::E0305, "this thing has no bounds, and so no middle", span)
+        .at("endless, empty or in no place")
         .help("name a thing with bounds, or give a point: `(0, 1, 0)m`")
 }
 

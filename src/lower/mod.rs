@@ -234,7 +234,7 @@ impl<'a> Lowering<'a> {
     /// Finds the one camera, lens and render block.
     fn blocks(&mut self) -> Blocks<'a> {
         let all: &'a [Thing] = &self.things.things;
-        let of = |kind| all.iter().filter(move |thing| thing.made.kind == kind && thing.made.is_sound());
+        let of = |kind| all.iter().filter(move |thing| thing.made.kind == kind);
         let mut blocks = Blocks::default();
         for (kind, place) in
             [(render::KIND, &mut blocks.render), (crate::schema::lens::KIND, &mut blocks.lens)]
@@ -265,7 +265,7 @@ impl<'a> Lowering<'a> {
         let names: Vec<&str> = cameras.iter().filter_map(|(_, camera)| camera.name.as_deref()).collect();
         if let Some(wanted) = &self.overrides.camera {
             let found = cameras.iter().find(|(_, camera)| camera.name.as_deref() == Some(wanted));
-            if found.is_none() {
+            if found.is_none() && !self.things.incomplete {
                 let place = cameras.first().map(|(_, camera)| camera.made.span);
                 self.report(errors::no_such_camera(wanted, &names, place));
             }
@@ -275,7 +275,11 @@ impl<'a> Lowering<'a> {
             let place = self.places(id)?;
             return cameras.iter().find(|(index, _)| place.contains(index)).map(|(_, camera)| *camera);
         }
-        if let [_, (_, second), ..] = cameras {
+        // What has an error may be what chooses.
+        let unknown = self.things.incomplete || render.is_some_and(|render| !render.made.is_sound());
+        if let [_, (_, second), ..] = cameras
+            && !unknown
+        {
             self.report(errors::which_camera(second.made.span, cameras[0].1.made.span, &names));
         }
         cameras.first().map(|(_, camera)| *camera)

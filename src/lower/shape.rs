@@ -46,6 +46,9 @@ pub(super) fn ball(placement: DAffine3, radius: f64, span: Span) -> Result<Shape
     if similar && size > 0.0 && size.is_finite() {
         let radius = radius * size.sqrt();
         let sound = (radius * radius).is_normal();
+        if radius * radius == f64::INFINITY {
+            return Err(Box::new(errors::too_large(span)));
+        }
         let shape = Shape::Sphere { center: placement.translation, radius };
         return if sound { Ok(shape) } else { Err(Box::new(errors::flattened(span))) };
     }
