@@ -1,20 +1,23 @@
 //! What a path is inside of.
 //!
-//! Dielectric solids nest. Where several overlap one of them is the medium, and the boundaries of the others
-//! do nothing there (Schmidt and Budge, "Simple nested dielectrics in ray traced images", JGT 2002). The one
-//! whose box is smaller wins, so that what is contained wins over what contains it; of equal ones, the later.
+//! Dielectric solids nest. Where several overlap one of them is the medium, and a boundary does what parts the
+//! medium before it from the one behind it: often nothing (after Schmidt and Budge, "Simple nested dielectrics in
+//! ray traced images", JGT 2002). Among the solids around a point, those that contain another of them are out; of
+//! the rest the one declared last is the medium.
+//!
+//! A fixed order of all solids could not say that: let A lie in B, C stick out of both, and A, C, B be declared in
+//! this order. Then A wins over B, B over C, and C over A. So the medium is chosen for each set of solids anew.
 
 use crate::color::Rgb;
 use crate::math::exp;
 use crate::render::shape::Ray;
+use crate::scene::nesting::lies_in;
 use crate::scene::shape::Bounds;
-use crate::scene::{Material, PrimitiveId, Scene};
+use crate::scene::{Material, PrimitiveId, Scene, Shape};
 
-/// The dielectric solids of a scene, in the order in which they win.
+/// The dielectric solids of a scene.
 pub struct Dielectrics<'s> {
     scene: &'s Scene,
-    /// For each primitive its rank, greater wins; none if it bounds no medium. Empty if no primitive does.
-    ranks: Vec<Option<u32>>,
     /// Those whose boundary may pass through the lens, or that contain it.
     near_camera: Vec<PrimitiveId>,
     /// Whether any has the index of vacuum, so that its boundary does nothing even outside of all others.
@@ -30,41 +33,29 @@ pub enum Boundary {
     Interface(f64),
 }
 
-/// The solids that a point of a path lies in, the winning one last.
+/// The solids that a point of a path lies in, in the order of their declaration, and which of them is the medium.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Inside {
     solids: Vec<PrimitiveId>,
+    medium: Option<PrimitiveId>,
 }
 
 impl<'s> Dielectrics<'s> {
-    /// Finds and ranks those of a scene.
+    /// Finds those of a scene.
     pub fn new(scene: &'s Scene) -> Dielectrics<'s> {
-        let index = |id: PrimitiveId| ior(scene, id);
-        let volume = |id: PrimitiveId| {
-            scene.primitives[id.0 as usize].shape.bounds().map_or(f64::INFINITY, |bounds| {
-                let size = bounds.size();
-                size.x * size.y * size.z
-            })
-        };
-        let mut solids: Vec<PrimitiveId> = (0..scene.primitives.len() as u32)
-            .map(PrimitiveId)
-            .filter(|&id| index(id).is_some() && scene.primitives[id.0 as usize].shape.is_closed())
-            .collect();
-        solids.sort_by(|&a, &b| volume(b).total_cmp(&volume(a)).then(a.cmp(&b)));
-        let mut ranks = vec![None; if solids.is_empty() { 0 } else { scene.primitives.len() }];
-        for (rank, id) in (0..).zip(&solids) {
-            ranks[id.0 as usize] = Some(rank);
-        }
-        let near_camera = solids.iter().copied().filter(|&id| may_reach_lens(scene, id)).collect();
-        let any_invisible = solids.iter().any(|&id| index(id) == Some(1.0));
-        Dielectrics { scene, ranks, near_camera, any_invisible }
+        let ids = (0..scene.primitives.len() as u32).map(PrimitiveId);
+        let solids: Vec<PrimitiveId> = ids.filter(|&id| ior(scene, id).is_some()).collect();
+        let any_invisible = solids.iter().any(|&id| ior(scene, id) == Some(1.0));
+        let near_camera = solids.into_iter().filter(|&id| may_reach_lens(scene, id)).collect();
+        Dielectrics { scene, near_camera, any_invisible }
     }
 
     /// Sets `inside` to the solids around the start of a camera ray.
     pub fn enter_at(&self, ray: &Ray, inside: &mut Inside) {
         inside.solids.clear();
+        inside.medium = None;
         for &id in &self.near_camera {
-            if self.scene.primitives[id.0 as usize].shape.contains(ray.origin) {
+            if self.shape(id).contains(ray.origin) {
                 self.cross(inside, id, true);
             }
         }
@@ -72,13 +63,14 @@ impl<'s> Dielectrics<'s> {
 
     /// What the surface of a dielectric does to a path that enters or leaves it.
     pub fn boundary(&self, inside: &Inside, id: PrimitiveId, entering: bool) -> Boundary {
-        let other = inside.solids.iter().rev().copied().find(|&solid| solid != id);
-        if other.is_some_and(|other| self.rank(other) > self.rank(id)) {
-            return Boundary::Nothing;
-        }
-        let without = other.and_then(|other| ior(self.scene, other)).unwrap_or(1.0);
-        let within = ior(self.scene, id).unwrap_or(1.0);
-        if without == within {
+        let others = || inside.solids.iter().copied().filter(|&solid| solid != id);
+        let without = self.medium(others);
+        // An open surface bounds no medium: it refracts where there is no other, and does nothing within one.
+        let within =
+            if self.is_solid(id) { self.medium(|| others().chain([id])) } else { without.or(Some(id)) };
+        let index = |medium: Option<PrimitiveId>| medium.and_then(|id| ior(self.scene, id)).unwrap_or(1.0);
+        let (within, without) = (index(within), index(without));
+        if within == without {
             return Boundary::Nothing;
         }
         Boundary::Interface(if entering { within / without } else { without / within })
@@ -86,22 +78,22 @@ impl<'s> Dielectrics<'s> {
 
     /// Takes a path through the surface of a solid. An open surface bounds no medium.
     pub fn cross(&self, inside: &mut Inside, id: PrimitiveId, entering: bool) {
-        let Some(rank) = self.ranks.get(id.0 as usize).copied().flatten() else { return };
-        let place = inside.solids.partition_point(|&solid| self.rank(solid) < Some(rank));
-        let known = inside.solids.get(place) == Some(&id);
-        match (entering, known) {
-            (true, false) => inside.solids.insert(place, id),
-            (false, true) => {
+        if !self.is_solid(id) {
+            return;
+        }
+        match (entering, inside.solids.binary_search(&id)) {
+            (true, Err(place)) => inside.solids.insert(place, id),
+            (false, Ok(place)) => {
                 inside.solids.remove(place);
             }
-            _ => {}
+            _ => return,
         }
+        inside.medium = self.medium(|| inside.solids.iter().copied());
     }
 
     /// The share of light that is left after a distance in the medium (Beer and Lambert).
     pub fn transmission(&self, inside: &Inside, distance: f64) -> Rgb {
-        let medium =
-            inside.solids.last().map(|id| self.scene.material(&self.scene.primitives[id.0 as usize]));
+        let medium = inside.medium.map(|id| self.scene.material(&self.scene.primitives[id.0 as usize]));
         let Some(Material::Dielectric { absorption, .. }) = medium else { return Rgb::ONE };
         // Neither a clear medium without end nor an opaque one without depth is 0 × ∞.
         let channel = |sigma: f64| if sigma == 0.0 || distance == 0.0 { 1.0 } else { exp(-sigma * distance) };
@@ -113,8 +105,25 @@ impl<'s> Dielectrics<'s> {
         self.any_invisible || !inside.solids.is_empty()
     }
 
-    fn rank(&self, id: PrimitiveId) -> Option<u32> {
-        self.ranks.get(id.0 as usize).copied().flatten()
+    /// Which of the solids around a point is the medium there.
+    fn medium<I: Iterator<Item = PrimitiveId>>(&self, solids: impl Fn() -> I) -> Option<PrimitiveId> {
+        let contains_none = |&outer: &PrimitiveId| !solids().any(|inner| self.contains(outer, inner));
+        // Containment runs in no circle, so there is always one that contains no other.
+        solids().filter(contains_none).max()
+    }
+
+    /// Whether one solid lies in another and the other not in it.
+    fn contains(&self, outer: PrimitiveId, inner: PrimitiveId) -> bool {
+        let (a, b) = (self.shape(outer), self.shape(inner));
+        outer != inner && lies_in(b, a) && !lies_in(a, b)
+    }
+
+    fn is_solid(&self, id: PrimitiveId) -> bool {
+        ior(self.scene, id).is_some() && self.shape(id).is_closed()
+    }
+
+    fn shape(&self, id: PrimitiveId) -> &'s Shape {
+        &self.scene.primitives[id.0 as usize].shape
     }
 }
 

@@ -139,6 +139,18 @@ impl Shape {
         }
     }
 
+    /// How far it reaches along a unit vector beyond a point; none for a surface without end.
+    pub fn reach(&self, direction: DVec3, from: DVec3) -> Option<f64> {
+        match self {
+            Shape::Sphere { center, radius } => Some(direction.dot(*center - from) + radius),
+            Shape::Plane { .. } => None,
+            Shape::Quadric(quadric) => {
+                let origin = quadric.world_from_object.translation;
+                quadric.is_bounded().then(|| direction.dot(origin - from) + quadric.extent(direction))
+            }
+        }
+    }
+
     /// Whether a point lies in the solid. A surface that encloses nothing has no inside.
     pub fn contains(&self, p: DVec3) -> bool {
         match self {
@@ -247,24 +259,31 @@ impl Quadric {
         side + self.cap_areas().iter().sum::<f64>()
     }
 
+    /// Whether it has an end in every direction.
+    fn is_bounded(&self) -> bool {
+        self.stretches().iter().flatten().all(|y| y.is_finite())
+    }
+
     /// The tight box: on each world axis the greatest value of a linear function on the surface.
     fn bounds(&self) -> Option<Bounds> {
-        let stretches = self.stretches();
-        if stretches.iter().flatten().any(|y| y.is_infinite()) {
+        if !self.is_bounded() {
             return None;
         }
-        let rows: DMat3 = self.world_from_object.matrix3.transpose();
-        let support = |direction: DVec3| {
-            stretches
-                .iter()
-                .filter(|[low, high]| low < high)
-                .map(|[low, high]| self.support(direction, *low, *high))
-                .fold(f64::NEG_INFINITY, f64::max)
-        };
-        let max = DVec3::new(support(rows.x_axis), support(rows.y_axis), support(rows.z_axis));
-        let min = -DVec3::new(support(-rows.x_axis), support(-rows.y_axis), support(-rows.z_axis));
+        let along = |direction| self.extent(direction);
+        let max = DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z));
+        let min = -DVec3::new(along(DVec3::NEG_X), along(DVec3::NEG_Y), along(DVec3::NEG_Z));
         let origin = self.world_from_object.translation;
         Some(Bounds { min: origin + min, max: origin + max })
+    }
+
+    /// How far a bounded one reaches along a direction of the world from where its map takes the origin.
+    fn extent(&self, direction: DVec3) -> f64 {
+        let g = self.world_from_object.matrix3.transpose() * direction;
+        self.stretches()
+            .iter()
+            .filter(|[low, high]| low < high)
+            .map(|[low, high]| self.support(g, *low, *high))
+            .fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// The greatest g·p over the side between two heights, in object space. About the axis the best point

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::math::exp;
+use crate::render::shape::Ray;
 
 fn tinted(ior: f64, absorption: f64) -> Material {
     Material::Dielectric { ior, absorption: Rgb::splat(absorption), alpha: 0.0 }
@@ -113,4 +114,52 @@ fn an_opaque_ball_in_glass_is_lit_through_it() {
     scene.materials[0] = frosted;
     let (mean, error) = measure(&Tracer::new(&scene), 20_000);
     assert!(mean < 1.0 + 5.0 * error && mean > 0.7, "{mean}");
+}
+
+/// Which of the solids that contain a point is the medium there, told by how far light gets.
+fn medium_at(p: DVec3, shapes: &[Shape]) -> Option<usize> {
+    let mut scene = scene(p, p + DVec3::Z);
+    for (i, shape) in shapes.iter().enumerate() {
+        scene = scene.with(*shape, tinted(1.5, 1.0 + i as f64));
+    }
+    let dielectrics = Dielectrics::new(&scene);
+    let mut inside = Inside::default();
+    dielectrics.enter_at(&Ray { origin: p, direction: DVec3::Z, start: None }, &mut inside);
+    let left = dielectrics.transmission(&inside, 1.0).x;
+    (left < 1.0).then(|| (-crate::math::ln(left)).round() as usize - 1)
+}
+
+#[test]
+fn the_contained_wins_and_on_a_partial_overlap_the_later() {
+    let ball = |x: f64, radius: f64| sphere(v(x, 0.0, 0.0), radius);
+    let (large, small) = (ball(0.0, 2.0), ball(0.5, 1.0));
+    assert_eq!(medium_at(v(0.6, 0.0, 0.0), &[large, small]), Some(1));
+    assert_eq!(medium_at(v(0.6, 0.0, 0.0), &[small, large]), Some(0));
+    assert_eq!(medium_at(v(-1.0, 0.0, 0.0), &[small, large]), Some(1));
+    // Partly, whichever is larger.
+    let other = ball(2.0, 0.9);
+    assert_eq!(medium_at(v(1.5, 0.0, 0.0), &[large, other]), Some(1));
+    assert_eq!(medium_at(v(1.5, 0.0, 0.0), &[other, large]), Some(1));
+    // The same twice: the later.
+    assert_eq!(medium_at(v(0.6, 0.0, 0.0), &[small, small]), Some(1));
+    // In water without end.
+    assert_eq!(medium_at(v(0.0, -3.0, 0.0), &[sphere(v(0.0, -3.0, 0.0), 1.0), floor()]), Some(0));
+    assert_eq!(medium_at(v(0.0, -0.5, 0.0), &[sphere(DVec3::ZERO, 1.0), floor()]), Some(1));
+}
+
+#[test]
+fn no_order_of_all_solids_is_needed() {
+    let ball = |x: f64, radius: f64| sphere(v(x, 0.0, 0.0), radius);
+    // The first lies in the third, and the second sticks out of both.
+    let [a, c, b] = [ball(0.0, 1.0), ball(3.0, 2.5), ball(0.0, 2.0)];
+    let all = [a, c, b];
+    assert_eq!(medium_at(v(0.0, 0.0, 0.0), &all), Some(0));
+    assert_eq!(medium_at(v(1.5, 0.0, 0.0), &all), Some(2));
+    assert_eq!(medium_at(v(0.8, 0.0, 0.0), &all), Some(1), "where all three meet");
+    // Energy is kept all the same.
+    let things: Vec<(Shape, Material)> = all.into_iter().zip([1.3, 1.7, 1.5].map(glass)).collect();
+    let mut scene = seen_from_front(&things).bounces(300);
+    scene.camera.half_extent = DVec2::splat(0.3);
+    let (mean, error) = measure(&Tracer::new(&scene), 8000);
+    assert!((mean - 1.0).abs() < 1e-3, "{mean} ± {error}");
 }
