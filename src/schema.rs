@@ -3,115 +3,12 @@
 //! Checking, lowering, messages and the reference page all read it, and no field is named anywhere else: the
 //! [`kinds!`] table also yields a module a kind (`sphere::RADIUS`, …) with a typed key a field.
 
-use crate::units::{self, Dim};
+mod types;
+
+use crate::units;
 use std::marker::PhantomData;
-
-/// What a kind is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Category {
-    /// A surface of the picture; takes the fields of [`PLACED`].
-    Shape,
-    /// What a surface is made of.
-    Material,
-    /// A source of light that is no shape.
-    Light,
-    /// Holds other things.
-    Group,
-    /// Says how the picture is taken.
-    Block,
-}
-
-/// A kind of thing: what may stand before `{`.
-#[derive(Debug)]
-pub struct Kind {
-    /// As written.
-    pub name: &'static str,
-    /// What it is for.
-    pub category: Category,
-    /// One or more sentences.
-    pub doc: &'static str,
-    /// Fields of its own, in the order of the reference.
-    pub fields: &'static [Field],
-    /// What must hold between the fields.
-    pub rules: &'static [Rule],
-}
-
-/// One field of a kind.
-#[derive(Debug)]
-pub struct Field {
-    /// As written.
-    pub name: &'static str,
-    /// What its value must be.
-    pub ty: FieldType,
-    /// What holds when it is not given.
-    pub default: Preset,
-    /// What its value must lie in, in base units; a tuple's components each.
-    pub range: Range,
-    /// One or more sentences.
-    pub doc: &'static str,
-}
-
-/// What a field's value must be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FieldType {
-    /// A quantity of this dimension; a number where there is none.
-    Scalar(Dim),
-    /// A whole number.
-    Int,
-    /// `true` or `false`.
-    Bool,
-    /// A linear colour.
-    Color,
-    /// So many quantities of one dimension.
-    Tuple(usize, Dim),
-    /// So many whole numbers.
-    IntTuple(usize),
-    /// A placement.
-    Transform,
-    /// A value whose kind is of this category.
-    Made(Category),
-    /// A value of this kind, which may also be written as a statement inside.
-    Part(&'static str),
-    /// A thing that stands in the scene and has bounds.
-    Target,
-    /// The name of a thing of this kind in the scene.
-    Named(&'static str),
-    /// One of these words.
-    Choice(&'static [Word]),
-    /// Any of these.
-    OneOf(&'static [FieldType]),
-}
-
-/// A bare word that a field understands.
-#[derive(Debug, PartialEq)]
-pub struct Word {
-    /// As written.
-    pub name: &'static str,
-    /// What it means.
-    pub doc: &'static str,
-}
-
-/// What holds when a field is not given.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Preset {
-    /// It must be given.
-    Required,
-    /// It may be absent; the words say what then happens.
-    Absent(&'static str),
-    /// This expression of the language.
-    Value(&'static str),
-}
-
-/// An interval of numbers in base units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Range {
-    /// Least value.
-    pub low: f64,
-    /// Greatest value.
-    pub high: f64,
-    /// Whether `low` itself is refused.
-    pub above: bool,
-}
+use types::Place;
+pub use types::{Category, Field, FieldType, Key, Kind, Preset, Range, Rule, Typed, Word};
 
 const ANY: Range = Range { low: f64::NEG_INFINITY, high: f64::INFINITY, above: false };
 const POSITIVE: Range = Range { low: 0.0, high: f64::INFINITY, above: true };
@@ -125,26 +22,6 @@ const REFLECTANCE: Range = within(0.0, 1.0);
 
 const fn within(low: f64, high: f64) -> Range {
     Range { low, high, above: false }
-}
-
-impl Range {
-    /// Whether a value is allowed.
-    pub fn contains(self, value: f64) -> bool {
-        (if self.above { value > self.low } else { value >= self.low }) && value <= self.high
-    }
-}
-
-/// What must hold between the fields of a kind.
-#[derive(Debug)]
-pub enum Rule {
-    /// Exactly one of them is given.
-    ExactlyOne(&'static [&'static str]),
-    /// The one excludes each of the others.
-    Excludes(&'static str, &'static [&'static str]),
-    /// All are given, or none is.
-    Together(&'static [&'static str]),
-    /// The one is given only beside the other.
-    Needs(&'static str, &'static str),
 }
 
 /// Index of a kind in [`KINDS`].
@@ -186,42 +63,6 @@ impl KindId {
 /// Finds a kind by name.
 pub fn kind(name: &str) -> Option<KindId> {
     KINDS.iter().position(|kind| kind.name == name).map(|index| KindId(index as u8))
-}
-
-/// Finds a field's place in a kind, and says by its type how to read the value.
-pub struct Key<T> {
-    place: Place,
-    ty: PhantomData<T>,
-}
-
-impl<T> Clone for Key<T> {
-    fn clone(&self) -> Key<T> {
-        *self
-    }
-}
-
-impl<T> Copy for Key<T> {}
-
-#[derive(Clone, Copy)]
-enum Place {
-    Own(usize),
-    Common(usize),
-}
-
-impl<T> Key<T> {
-    /// The index in [`KindId::fields`] of a kind that has the field.
-    pub fn index(&self, kind: KindId) -> usize {
-        match self.place {
-            Place::Own(index) => index,
-            Place::Common(index) => kind.get().fields.len() + index,
-        }
-    }
-}
-
-/// A type of fields, known when this is compiled.
-pub trait Typed {
-    /// The same as a value.
-    const TYPE: FieldType;
 }
 
 macro_rules! types {
