@@ -9,16 +9,23 @@ use crate::span::Span;
 use crate::syntax::ast::{Keyword, Name};
 use crate::units::{self, Dim};
 
+/// The longest name that a guess is made for.
+const MAX_GUESSED: usize = 64;
+
 /// The candidate that is probably meant: at most a third of the letters away. Of a name of one letter another
 /// letter says nothing.
 pub(super) fn closest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
-    let limit = match name.chars().count() {
+    let length = name.chars().count();
+    let limit = match length {
         0 | 1 => 0,
-        count => (count / 3).max(1),
+        // Comparing takes time with the square of the length.
+        2..=MAX_GUESSED => (length / 3).max(1),
+        _ => return None,
     };
     let lower = name.to_lowercase();
     candidates
         .iter()
+        .filter(|candidate| candidate.chars().count().abs_diff(length) <= limit)
         .map(|candidate| {
             let distance = strsim::damerau_levenshtein(name, candidate);
             // Another case of the same letters is the nearest miss there is; first letters are seldom wrong.
