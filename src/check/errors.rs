@@ -338,7 +338,7 @@ fn unit_code(wanted: Dim, found: Element) -> Code {
 /// alone knows the unit, so no edit is offered.
 fn with_unit(diagnostic: Diagnostic, text: &str, unit: Option<String>) -> Diagnostic {
     let Some(unit) = unit else { return diagnostic };
-    let text = if text.is_empty() || text.len() > 40 || text.contains('\n') { "(…)" } else { text };
+    let text = if text.is_empty() || text.len() > 40 || text.contains(['\n', '<']) { "(…)" } else { text };
     let bare = text.starts_with('(') || text.bytes().all(|b| b.is_ascii_digit() || b == b'.');
     let shown = if bare { text.to_string() } else { format!("({text})") };
     let help = match unit.as_str() {
