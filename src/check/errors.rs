@@ -285,7 +285,12 @@ pub(super) fn mismatch(field: &Field, span: Span, text: &str, ty: Type) -> Diagn
         },
         Code::E0205 => diagnostic.help(color_help(text, ty)),
         Code::E0206 => diagnostic.help("whole numbers have no decimal point; `round(…)` makes one"),
-        Code::E0305 => diagnostic.help("name a thing that stands in the picture: `sphere ball { … }`"),
+        Code::E0305 => match field.ty {
+            FieldType::Named(kind) => {
+                diagnostic.help(format!("name one that stands by itself: `{kind} NAME {{ … }}`"))
+            }
+            _ => diagnostic.help("name a thing that stands in the picture: `sphere ball { … }`"),
+        },
         _ => match (field.ty, ty) {
             (FieldType::Choice(words), _) => diagnostic.help(word_list(words)),
             (FieldType::Tuple(..) | FieldType::IntTuple(_), _) => {
