@@ -77,7 +77,10 @@ pub fn compile(sources: &Sources, id: SourceId, overrides: &Overrides) -> Compil
     let lowered = lower::lower(&things, overrides);
     diagnostics.extend(lowered.diagnostics);
     diagnostics.sort_by_key(|diagnostic| (diagnostic.primary.span, diagnostic.code));
-    diagnostics.dedup();
+    // What is wrong in a prototype is one error, however often it is used.
+    diagnostics.dedup_by(|again, first| {
+        (again.code, &again.primary, &again.message) == (first.code, &first.primary, &first.message)
+    });
     let scene = lowered.scene.filter(|_| !diagnostic::any_errors(&diagnostics));
     Compiled { scene, origins: things.origins, diagnostics, notes: lowered.notes, noise: lowered.noise }
 }

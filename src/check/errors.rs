@@ -9,16 +9,23 @@ use crate::span::Span;
 use crate::syntax::ast::{Keyword, Name};
 use crate::units::{self, Dim};
 
+/// The longest name that a guess is made for.
+const MAX_GUESSED: usize = 64;
+
 /// The candidate that is probably meant: at most a third of the letters away. Of a name of one letter another
 /// letter says nothing.
 pub(super) fn closest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
-    let limit = match name.chars().count() {
+    let length = name.chars().count();
+    let limit = match length {
         0 | 1 => 0,
-        count => (count / 3).max(1),
+        // Comparing takes time with the square of the length.
+        2..=MAX_GUESSED => (length / 3).max(1),
+        _ => return None,
     };
     let lower = name.to_lowercase();
     candidates
         .iter()
+        .filter(|candidate| candidate.chars().count().abs_diff(length) <= limit)
         .map(|candidate| {
             let distance = strsim::damerau_levenshtein(name, candidate);
             // Another case of the same letters is the nearest miss there is; first letters are seldom wrong.
@@ -278,7 +285,12 @@ pub(super) fn mismatch(field: &Field, span: Span, text: &str, ty: Type) -> Diagn
         },
         Code::E0205 => diagnostic.help(color_help(text, ty)),
         Code::E0206 => diagnostic.help("whole numbers have no decimal point; `round(…)` makes one"),
-        Code::E0305 => diagnostic.help("name a thing that stands in the picture: `sphere ball { … }`"),
+        Code::E0305 => match field.ty {
+            FieldType::Named(kind) => {
+                diagnostic.help(format!("name one that stands by itself: `{kind} NAME {{ … }}`"))
+            }
+            _ => diagnostic.help("name a thing that stands in the picture: `sphere ball { … }`"),
+        },
         _ => match (field.ty, ty) {
             (FieldType::Choice(words), _) => diagnostic.help(word_list(words)),
             (FieldType::Tuple(..) | FieldType::IntTuple(_), _) => {
@@ -331,7 +343,7 @@ fn unit_code(wanted: Dim, found: Element) -> Code {
 /// alone knows the unit, so no edit is offered.
 fn with_unit(diagnostic: Diagnostic, text: &str, unit: Option<String>) -> Diagnostic {
     let Some(unit) = unit else { return diagnostic };
-    let text = if text.is_empty() || text.len() > 40 || text.contains('\n') { "(…)" } else { text };
+    let text = if text.is_empty() || text.len() > 40 || text.contains(['\n', '<']) { "(…)" } else { text };
     let bare = text.starts_with('(') || text.bytes().all(|b| b.is_ascii_digit() || b == b'.');
     let shown = if bare { text.to_string() } else { format!("({text})") };
     let help = match unit.as_str() {

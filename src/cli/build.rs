@@ -197,7 +197,8 @@ fn summary(job: &Job, scene: &Scene, traced: &Traced, time: Duration) -> String 
     };
     let names = names(&job.targets);
     let Traced { samples, picture: Picture { size: [width, height], .. }, .. } = traced;
-    format!("{names}: {width}×{height}, {samples} samples{noise} in {}, {exposure}", duration(time))
+    let unit = if *samples == 1 { "sample" } else { "samples" };
+    format!("{names}: {width}×{height}, {samples} {unit}{noise} in {}, {exposure}", duration(time))
 }
 
 /// What the command line says in place of the file.

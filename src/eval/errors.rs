@@ -119,6 +119,6 @@ pub(super) fn too_many_levels(span: Span) -> Diagnostic {
 
 pub(super) fn too_many_things(span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0406, format!("more than {MAX_THINGS} things"), span)
-        .at("one thing too many")
+        .at("too many in all")
         .help("groups within groups multiply: this many no picture can show")
 }

@@ -180,7 +180,7 @@ impl Lowering<'_> {
     }
 
     fn say_placed(&mut self, camera: bool, position: DVec3, look: DVec3) {
-        let show = |p: DVec3| format!("({:.3}, {:.3}, {:.3})m", p.x, p.y, p.z);
+        let show = |p: DVec3| format!("({}, {}, {})m", rounded(p.x), rounded(p.y), rounded(p.z));
         let what = if camera { "the camera has no `from`" } else { "no camera" };
         let line = format!(
             "{what}: a three-quarter view that frames everything, as `camera {{ from: {}, look: {} }}`",
@@ -188,6 +188,15 @@ impl Lowering<'_> {
             show(look)
         );
         self.out.notes.push(line);
+    }
+}
+
+/// Four digits of a number, as the language writes it, whatever the size of the scene.
+fn rounded(x: f64) -> String {
+    let short = format!("{x:.3e}");
+    match short.parse::<f64>() {
+        Ok(x) if x == 0.0 || (1e-4..1e7).contains(&x.abs()) => format!("{x}"),
+        _ => short,
     }
 }
 

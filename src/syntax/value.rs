@@ -189,7 +189,13 @@ fn elements(builder: &Builder, pair: Node) -> Elements {
                 found.depth = found.depth.max(depth);
                 found.arguments.push(Argument { name: name.take(), value });
             }
-            Rule::extra => builder.unexpected(&pair, errors::unexpected_in_parentheses),
+            Rule::extra => {
+                builder.unexpected(&pair, errors::unexpected_in_parentheses);
+                // What the value was to be is not known; nor is how many there were to be.
+                if let Some(last) = found.arguments.last_mut() {
+                    last.value.kind = ExprKind::Invalid;
+                }
+            }
             Rule::semicolon => builder.semicolon(&pair),
             _ => {
                 let close = builder.span(&pair);

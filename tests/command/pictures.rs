@@ -8,7 +8,7 @@ fn the_picture_goes_beside_its_scene() {
     let desk = Desk::new();
     fs::create_dir(desk.path("sub")).unwrap();
     desk.put("sub/other.rt", BALL);
-    desk.quick("ball.rt sub/other.rt").expect(0, &["ball.png: 16×12, 1 samples", "other.png", "exposure"]);
+    desk.quick("ball.rt sub/other.rt").expect(0, &["ball.png: 16×12, 1 sample", "other.png", "exposure"]);
     assert_eq!(desk.names(), ["ball.png", "ball.rt", "sub"]);
     assert_eq!(read_png(&desk.get("sub/other.png")).0, [16, 12]);
 }
