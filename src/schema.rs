@@ -253,6 +253,12 @@ pub mod placed {
     pub const PLACE: Key<Transform> = Key { place: Place::Common(2), ty: PhantomData };
 }
 
+/// Angle of view in radians where neither camera nor lens says: the words of `fov` say the same.
+pub const DEFAULT_FOV: f64 = 40.0 / 180.0 * std::f64::consts::PI;
+
+/// Samples a pixel where the file says neither samples nor noise: the words of `samples` say the same.
+pub const DEFAULT_SAMPLES: u32 = 64;
+
 /// The material of whatever names none, and the built-in colour of materials that give none.
 pub const DEFAULT_COLOR: &str = "#cccccc";
 
@@ -427,5 +433,34 @@ kinds! {
         TONEMAP "tonemap": TonemapWord = Value("neutral"), ANY;
         /// How a pixel weighs the light around it.
         FILTER "filter": FilterWord = Value("gaussian"), ANY;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_fits_its_indices() {
+        assert!(KINDS.len() <= usize::from(u8::MAX));
+        for index in 0..KINDS.len() {
+            let kind = KindId(index as u8);
+            assert!(kind.field_count() <= 64, "{} has more fields than a set holds", kind.get().name);
+            assert!(super::kind(kind.get().name) == Some(kind), "{} is there twice", kind.get().name);
+            for (place, field) in kind.fields().enumerate() {
+                assert_eq!(kind.field_index(field.name), Some(place), "{} is there twice", field.name);
+            }
+        }
+    }
+
+    #[test]
+    fn words_about_defaults_that_lowering_chooses_are_true() {
+        let says = |key: usize, kind: KindId, words: String| match kind.field(key).default {
+            Absent(text) => assert!(text.starts_with(&words), "{text}"),
+            other => panic!("{other:?}"),
+        };
+        let degrees = DEFAULT_FOV * 180.0 / std::f64::consts::PI;
+        says(camera::FOV.index(camera::KIND), camera::KIND, format!("{degrees:.0}deg"));
+        says(render::SAMPLES.index(render::KIND), render::KIND, format!("{DEFAULT_SAMPLES},"));
     }
 }

@@ -6,7 +6,7 @@ use crate::color;
 use crate::diagnostic::Code;
 use crate::span::Span;
 use crate::syntax::ast::{self, BinaryOp, ExprKind as Tree, Name, UnaryOp};
-use crate::units::{self, Dim};
+use crate::units;
 
 impl Checker<'_> {
     /// Finds the type of an expression, wherever it stands.
@@ -285,9 +285,4 @@ impl Checker<'_> {
 /// What a computed value counts: a zero that was computed is a whole number like others, not the literal 0.
 fn whole(element: Element) -> Element {
     if element == Element::Zero { Element::Int } else { element }
-}
-
-/// The dimension under a square root.
-pub(super) fn root(dim: Dim) -> Option<Dim> {
-    dim.root()
 }

@@ -103,12 +103,6 @@ pub fn by_name(name: &str) -> Option<Function> {
     Function::ALL.iter().copied().find(|function| function.name() == name)
 }
 
-/// What a parameter takes, where that does not depend on the others.
-#[derive(Clone, Copy)]
-enum Wanted {
-    Dim(units::Dim),
-}
-
 impl Checker<'_> {
     /// Checks a call.
     pub(super) fn call(&mut self, name: &Name, arguments: &[Argument], span: Span) -> (ExprKind, Type) {
@@ -177,20 +171,20 @@ impl Checker<'_> {
             self.report(errors::argument_count(function, span, values.len()));
             return None;
         }
-        let number = Wanted::Dim(units::NONE);
+        let number = units::NONE;
         let mut arguments = Arguments { checker: self, function, values, types };
         match function {
-            Sin | Cos | Tan => arguments.each(&[Wanted::Dim(ANGLE)], Type::Scalar(NUMBER)),
+            Sin | Cos | Tan => arguments.each(&[ANGLE], Type::Scalar(NUMBER)),
             Asin | Acos => arguments.each(&[number], Type::Scalar(Element::Quantity(ANGLE))),
             Exp | Log => arguments.each(&[number], Type::Scalar(NUMBER)),
             Pow => arguments.each(&[number, number], Type::Scalar(NUMBER)),
             Floor | Ceil | Round => arguments.each(&[number], Type::Scalar(Element::Int)),
             Rgb | Srgb => arguments.each(&[number, number, number], Type::Color),
-            Hsv => arguments.each(&[Wanted::Dim(ANGLE), number, number], Type::Color),
-            Blackbody => arguments.each(&[Wanted::Dim(TEMPERATURE)], Type::Color),
-            Turn => arguments.each(&[Wanted::Dim(ANGLE)], Type::Transform),
+            Hsv => arguments.each(&[ANGLE, number, number], Type::Color),
+            Blackbody => arguments.each(&[TEMPERATURE], Type::Color),
+            Turn => arguments.each(&[ANGLE], Type::Transform),
             Scale => arguments.each(&[number, number, number][..values.len()], Type::Transform),
-            Move if values.len() == 3 => arguments.each(&[Wanted::Dim(LENGTH); 3], Type::Transform),
+            Move if values.len() == 3 => arguments.each(&[LENGTH; 3], Type::Transform),
             Move => {
                 arguments.triple(0, Some(LENGTH))?;
                 Some(Type::Transform)
@@ -228,9 +222,9 @@ struct Arguments<'c, 'a, 'v> {
 
 impl Arguments<'_, '_, '_> {
     /// Each argument is a quantity of its own dimension.
-    fn each(&mut self, wanted: &[Wanted], gives: Type) -> Option<Type> {
+    fn each(&mut self, wanted: &[units::Dim], gives: Type) -> Option<Type> {
         let mut sound = true;
-        for (index, Wanted::Dim(dim)) in wanted.iter().enumerate() {
+        for (index, dim) in wanted.iter().enumerate() {
             let fits = matches!(self.types[index], Type::Scalar(element) if element.fits(*dim));
             if !fits {
                 sound = false;
@@ -269,7 +263,7 @@ impl Arguments<'_, '_, '_> {
     }
 
     fn root(&mut self, element: Element) -> Option<Type> {
-        let root = super::expr::root(element.dim());
+        let root = element.dim().root();
         if root.is_none() {
             self.checker.report(errors::root(self.values[0].span, self.types[0]));
         }

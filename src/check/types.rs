@@ -102,7 +102,10 @@ impl Type {
             Type::Text => "a text".into(),
             Type::Color => "a colour".into(),
             Type::Transform => "a placement".into(),
-            Type::Made(kind, _) => format!("{} `{}`", article(kind), kind.get().name),
+            Type::Made(kind, _) if matches!(kind.get().category, Category::Material) => {
+                format!("{} `{}`", article(kind), kind.get().name)
+            }
+            Type::Made(kind, _) => format!("{} `{}` that is not drawn", article(kind), kind.get().name),
             Type::Thing(kind) => format!("{} `{}` of the scene", article(kind), kind.get().name),
         }
     }

@@ -4,12 +4,10 @@ use super::{Problem, plain};
 use rt_lang::diagnostic::{Code, Diagnostic};
 use rt_lang::source::{Source, Sources};
 use rt_lang::span::{SourceId, Span};
+use rt_lang::syntax::MAX_SOURCE;
 use std::fs::File;
 use std::io::{self, Read, stdin};
 use std::path::Path;
-
-/// The largest source, in bytes.
-const LARGEST: u64 = 256 << 20;
 
 /// A source that was read, and what is wrong with its bytes.
 pub struct Input {
@@ -29,13 +27,13 @@ pub fn is_standard(path: &Path) -> bool {
 /// Reads a scene.
 pub fn read(path: &Path) -> Result<Input, Problem> {
     let (name, bytes) = if is_standard(path) {
-        ("<stdin>".to_string(), limited(stdin().lock(), LARGEST))
+        ("<stdin>".to_string(), limited(stdin().lock(), MAX_SOURCE as u64))
     } else {
         if path.is_dir() {
             let problem = Problem::new(format!("`{}` is a folder, not a scene", path.display()));
             return Err(problem.help("name a .rt file in it"));
         }
-        (path.display().to_string(), File::open(path).and_then(|file| limited(file, LARGEST)))
+        (path.display().to_string(), File::open(path).and_then(|file| limited(file, MAX_SOURCE as u64)))
     };
     let bytes = bytes.map_err(|error| Problem::new(format!("cannot read `{name}`: {}", plain(&error))))?;
     Ok(take(name, bytes))
@@ -64,7 +62,7 @@ fn limited(from: impl Read, most: u64) -> io::Result<Vec<u8>> {
 }
 
 fn take(name: String, bytes: Vec<u8>) -> Input {
-    let too_large = bytes.len() as u64 > LARGEST;
+    let too_large = bytes.len() > MAX_SOURCE;
     let (text, wrong) = match String::from_utf8(if too_large { vec![] } else { bytes }) {
         Ok(text) => (text, None),
         Err(error) => {
@@ -100,7 +98,7 @@ mod errors {
     }
 
     pub fn too_large(id: SourceId) -> Diagnostic {
-        let message = format!("a scene file is at most {} MiB, this is larger", LARGEST >> 20);
+        let message = format!("a scene file is at most {} MiB, this is larger", MAX_SOURCE >> 20);
         Diagnostic::new(Code::E0406, message, Span::new(id, 0, 0))
     }
 

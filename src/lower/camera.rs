@@ -2,17 +2,14 @@
 
 use super::{Blocks, Extent, Lowering, errors, shape::unit};
 use crate::eval::{Aim, Focus, Made, ThingId};
-use crate::math::{DVec2, DVec3, PI, atan2, sin, tan};
+use crate::math::{DVec2, DVec3, atan2, sin, tan};
 use crate::scene::Camera;
 use crate::scene::shape::Bounds;
-use crate::schema::{camera, lens};
+use crate::schema::{DEFAULT_FOV, camera, lens};
 use crate::span::Span;
 
 /// From the middle of the picture towards a camera that was not placed: a three-quarter view.
 const THREE_QUARTER: DVec3 = DVec3::new(0.55, 0.42, 1.0);
-
-/// Angle of view where neither camera nor lens says: 40°.
-const DEFAULT_FOV: f64 = 40.0 / 180.0 * PI;
 
 /// Room left around what a placed camera frames.
 const MARGIN: f64 = 1.08;

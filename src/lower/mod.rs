@@ -12,15 +12,12 @@ use crate::eval::{Thing, ThingId, Things};
 use crate::math::DVec3;
 use crate::scene::shape::Bounds;
 use crate::scene::{Develop, Light, Material, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace};
-use crate::schema::{Category, light, render, sky, sun};
+use crate::schema::{Category, DEFAULT_SAMPLES, light, render, sky, sun};
 use crate::span::Span;
 use material::Materials;
 
 /// The most pixels a picture may have.
 pub const MAX_PIXELS: u64 = 100_000_000;
-
-/// Samples a pixel where the file does not say.
-const DEFAULT_SAMPLES: u32 = 64;
 
 /// Settings from outside that stand in place of the file's.
 #[derive(Clone, Debug, Default)]

@@ -134,16 +134,26 @@ pub(super) fn control(span: Span) -> Diagnostic {
 
 /// A word of the language where a name should stand.
 pub(super) fn reserved(word: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0001, format!("`{word}` is a word of the language and cannot be a name"), span)
-        .at("reserved")
-        .help("choose another name")
+    let diagnostic = Diagnostic::new(
+        Code::E0001,
+        format!("`{word}` is a word of the language and cannot be a name"),
+        span,
+    )
+    .at("reserved");
+    match word {
+        "let" | "material" | "and" | "or" | "not" | "true" | "false" => {
+            diagnostic.help("choose another name")
+        }
+        _ => diagnostic
+            .help("this version keeps the word for later and does not know it yet; choose another name"),
+    }
 }
 
 /// A word of the language where a value should stand.
 pub(super) fn reserved_value(word: &str, span: Span) -> Diagnostic {
     unexpected(word, span)
         .at("a value belongs here")
-        .help(format!("`{word}` is a word of the language, not a value"))
+        .help(format!("`{word}` is a word of the language or kept for a later version, not a value"))
 }
 
 /// Nothing where a value should stand; `before` is what it should follow.
