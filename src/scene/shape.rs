@@ -1,6 +1,6 @@
 //! Surfaces in world space, with what can be said of them without a ray: bounds, area, inside.
 
-use crate::math::{DAffine3, DMat3, DVec3, PI, cos, sin};
+use crate::math::{DAffine3, DVec3, PI, cos, sin};
 use serde::Serialize;
 
 /// A surface. Normals point out of a closed solid; a plane's normal points out of the half-space it bounds.
@@ -307,6 +307,7 @@ impl Quadric {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::DMat3;
 
     fn quadric(form: Form, low: f64, high: f64, map: DAffine3) -> Quadric {
         Quadric { form, world_from_object: map, object_from_world: map.inverse(), low, high, capped: true }

@@ -81,14 +81,3 @@ fn the_room_agrees_with_another_renderer() {
     assert!(mean < 8e-3, "blocks differ by {mean}");
     assert!(median < 0.3 * coarse, "eight times the samples brought {coarse} to {median}");
 }
-
-/// Takes minutes: `cargo test --release --lib reference -- --ignored --nocapture`.
-#[test]
-#[ignore = "takes minutes in a release build"]
-#[expect(clippy::print_stdout, reason = "it is run to read its figures")]
-fn the_room_converges_to_the_reference() {
-    for samples in [64, 256, 1024] {
-        let (ratio, mean, median) = render(samples);
-        println!("{samples} samples: ratio {ratio}, blocks' relMSE mean {mean:.3e} median {median:.3e}");
-    }
-}
