@@ -79,6 +79,7 @@ impl Comparator for Decoded {
 }
 
 impl Decoded {
+    #[expect(clippy::print_stdout, reason = "shown beside the failure of the test")]
     fn lay_side_by_side(&self, expected: &[u8], actual: &[u8]) {
         let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("../pictures");
         std::fs::create_dir_all(&folder).unwrap();
