@@ -79,7 +79,7 @@ impl Comparator for Decoded {
 }
 
 impl Decoded {
-    #[expect(clippy::print_stdout, reason = "it says why a test fails")]
+    #[expect(clippy::print_stdout, reason = "shown beside the failure of the test")]
     fn lay_side_by_side(&self, expected: &[u8], actual: &[u8]) {
         let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("../pictures");
         std::fs::create_dir_all(&folder).unwrap();
@@ -92,11 +92,7 @@ impl Decoded {
         if size == other {
             let difference: Vec<u8> =
                 a.iter().zip(&b).map(|(a, b)| a.abs_diff(*b).saturating_mul(16)).collect();
-            let image = image::RgbImage::from_raw(size.0, size.1, difference).unwrap();
-            let mut file = std::io::Cursor::new(vec![]);
-            let encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut file, 100);
-            image.write_with_encoder(encoder).unwrap();
-            std::fs::write(folder.join(format!("{}.difference.jpg", self.name)), file.into_inner()).unwrap();
+            put("difference", &encode_png(size, &difference));
             let worst = a.iter().zip(&b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
             let count = a.chunks(3).zip(b.chunks(3)).filter(|(a, b)| a != b).count();
             println!(
@@ -115,6 +111,15 @@ fn bytes(snapshot: &Snapshot) -> Option<Vec<u8>> {
         SnapshotContents::Binary(Some(bytes)) => Some(bytes.to_vec()),
         _ => None,
     }
+}
+
+/// A PNG of 8-bit red, green and blue.
+fn encode_png((width, height): (u32, u32), pixels: &[u8]) -> Vec<u8> {
+    let mut file = vec![];
+    let mut encoder = png::Encoder::new(&mut file, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.write_header().unwrap().write_image_data(pixels).unwrap();
+    file
 }
 
 /// Width, height, and 8-bit red, green and blue of a PNG.

@@ -40,7 +40,9 @@ impl<'s> Eye<'s> {
         // Every ray through the lens goes on to where the one through its centre meets the plane of focus.
         let lens = camera.lens_radius * warp::disc(sampler.pair(Pair::Lens));
         let shift = lens.x * camera.right + lens.y * camera.up;
-        let direction = (camera.focus * pinhole - shift).normalize();
+        // Scaled such that neither a near nor a far focus leaves the range of numbers.
+        let (near, far) = (camera.focus.min(1.0), camera.focus.max(1.0));
+        let direction = (near * pinhole - shift / far).normalize();
         Ray { origin: camera.position + shift, direction, start: None }
     }
 }

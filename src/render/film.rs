@@ -76,7 +76,8 @@ impl Pixel {
         for (sum, v) in self.sum.iter_mut().zip(value.to_array()) {
             *sum += v as i64;
         }
-        let magnitude = luminance(value).abs() as u128;
+        // Rounded, not cut: a sum of squares that is too small on average would hide the noise of even pixels.
+        let magnitude = luminance(value).abs().round() as u128;
         self.luminance_squares += magnitude * magnitude;
         self.samples += 1;
     }
@@ -182,7 +183,8 @@ impl Film {
     }
 
     pub(super) fn merge_pixels(&mut self, window: Window, pixels: &[Pixel]) {
-        for (row, y) in pixels.chunks_exact(window.width as usize).zip(window.y..) {
+        // A window without columns has no pixels either.
+        for (row, y) in pixels.chunks_exact(window.width.max(1) as usize).zip(window.y..) {
             let start = self.window.index(window.x, y);
             for (sum, pixel) in self.pixels[start..start + row.len()].iter_mut().zip(row) {
                 sum.merge(pixel);

@@ -24,6 +24,10 @@ const FIRST_ROULETTE: u32 = 16;
 /// could ever hold one that long.
 const MOST_PASSES: u32 = 10_000;
 
+/// A ray that meets a surface along it comes from above by this cosine at least, so that what is divided by the
+/// cosine and its square stays finite.
+pub(super) const LEAST_COSINE: f64 = 1e-9;
+
 /// No light is brighter than this, so that products stay finite.
 const BRIGHTEST: f64 = 1e100;
 
@@ -180,8 +184,7 @@ impl LocalVertex {
         let (x, y) = basis(z);
         let mut vertex = LocalVertex { place, p: point.p, x, y, z, wo: DVec3::ZERO, entering };
         vertex.wo = vertex.local(-direction);
-        // A ray along the surface grazes it from above.
-        vertex.wo.z = vertex.wo.z.max(f64::MIN_POSITIVE);
+        vertex.wo.z = vertex.wo.z.max(LEAST_COSINE);
         vertex
     }
 

@@ -54,14 +54,12 @@ fn cell_mean(tracer: &Tracer, cell: u32) -> Rgb {
 }
 
 /// The geometric mean of what is not black, each raised to a thousandth of the mean at least: noise in the
-/// shadows must not count.
-fn log_mean(sorted: &[f64]) -> f64 {
+/// shadows must not count. The mean cuts the brightest twentieth, where a single light may be above all measure.
+pub(super) fn log_mean(sorted: &[f64]) -> f64 {
     let lit: Vec<f64> = sorted.iter().copied().filter(|v| *v > 0.0).collect();
-    let count = lit.len().max(1) as f64;
-    let mean = lit.iter().map(|v| v / count).sum::<f64>();
-    if mean == 0.0 {
-        return 0.0;
-    }
+    let Some(&bright) = lit.get(lit.len() * 95 / 100) else { return 0.0 };
+    let count = lit.len() as f64;
+    let mean = lit.iter().map(|v| v.min(bright) / count).sum::<f64>();
     exp(lit.iter().map(|v| ln(v.max(1e-3 * mean)) / count).sum())
 }
 

@@ -1,9 +1,10 @@
 //! What needs more than Rust: `cargo xtask e2e` runs the command on a real terminal, on a full disk, within
-//! little memory, and as the README says.
+//! little memory, against another renderer, and as the README says.
 //!
 //! Nothing is skipped quietly. A tool that is missing fails the step that needs it, with its name.
 
 mod readme;
+mod reference;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -22,6 +23,7 @@ const STEPS: &[(&str, Step)] = &[
     ("full-disk", full_disk),
     ("memory", memory),
     ("licences", licences),
+    ("reference", reference::agreement),
     ("readme", readme::commands),
 ];
 
@@ -36,6 +38,7 @@ cargo xtask e2e [STEP…]
   full-disk  a disk that fills up while a picture is written
   memory     hostile sources within 2 GiB of address space
   licences   every dependency's licence is one that deny.toml allows
+  reference  the room against a converged picture of another renderer (minutes)
   readme     every command of the README, in a fresh clone of HEAD
 
 Without STEP all are run. Needs python3, bash, git and, for full-disk, leave to mount a tmpfs.";

@@ -24,7 +24,7 @@ pub(super) fn intersect(center: DVec3, radius: f64, ray: &Ray, on_it: bool) -> O
         return None;
     }
     let larger = b + discriminant.sqrt().copysign(b);
-    // From inside, the roots have opposite signs; the greater one is positive.
-    let t = if product < 0.0 && b >= 0.0 { larger } else { product / larger };
+    // From inside, the roots have opposite signs; the greater one is positive. From the surface itself, one is 0.
+    let t = if product <= 0.0 && b >= 0.0 { larger } else { product / larger };
     (t > 0.0).then_some(t)
 }

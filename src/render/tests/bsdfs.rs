@@ -3,6 +3,7 @@
 use super::*;
 use crate::math::{asin, cos, sin};
 use crate::render::bsdf::{SMOOTH_ALPHA, fresnel};
+use crate::render::integrator::LEAST_COSINE;
 
 fn toward(angle: f64) -> DVec3 {
     v(sin(angle), 0.0, cos(angle))
@@ -217,5 +218,31 @@ fn refraction_goes_where_snell_says() {
         let lamp = sphere(10.0 * along + 1e-3 * offset * across, 1e-3);
         let scene = scene(from, DVec3::ZERO).with(floor(), glass(1.5)).with(lamp, glow(1.0));
         assert_shows(&scene, 20_000, expected, 1e-9);
+    }
+}
+
+#[test]
+fn grazing_directions_give_finite_light() {
+    let color = Rgb::splat(0.5);
+    let (smooth, rough) = (Coat::new(1.5, 0.0), Coat::new(1.5, 0.3));
+    let mut random = Random(6);
+    for z in [LEAST_COSINE, 1e-6, 1.0] {
+        let wo = v((1.0 - z * z).sqrt(), 0.0, z);
+        for bsdf in [
+            Bsdf::Metal { color, alpha: SMOOTH_ALPHA },
+            Bsdf::Metal { color, alpha: 1.0 },
+            Bsdf::Dielectric { eta: 1.5, alpha: SMOOTH_ALPHA },
+            Bsdf::Dielectric { eta: 0.1, alpha: 1.0 },
+            Bsdf::Dielectric { eta: 1.0 + 1e-9, alpha: 0.3 },
+            Bsdf::Plastic { color, coat: &smooth },
+            Bsdf::Plastic { color, coat: &rough },
+        ] {
+            for _ in 0..2000 {
+                let Some(sample) = bsdf.sample(wo, random.next(), random.pair()) else { continue };
+                assert!(sample.weight.is_finite() && sample.pdf > 0.0, "{z}: {sample:?}");
+                let f = bsdf.eval(wo, sample.wi);
+                assert!(!f.is_nan() && !bsdf.pdf(wo, sample.wi).is_nan(), "{z}: {f}");
+            }
+        }
     }
 }

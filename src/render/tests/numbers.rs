@@ -118,6 +118,34 @@ fn a_pixel_knows_its_mean_and_error_and_does_not_overflow() {
 }
 
 #[test]
+fn the_error_of_a_nearly_even_pixel_is_seen() {
+    // At the coarsest scale there is, 2¹⁴ units for the typical radiance, with a spread of half a percent.
+    let scale = scale_for(1.0, 1e12);
+    let mut random = Random(12);
+    let mut pixel = Pixel::default();
+    const N: u32 = 4096;
+    for _ in 0..N {
+        pixel.add(Rgb::splat(1.0 + 0.005 * random.within(-1.0, 1.0)), scale);
+    }
+    let mut film = Film::new(Window::whole([1, 1]), scale);
+    film.merge_pixels(Window::whole([1, 1]), &[pixel]);
+    let expected = 0.005 / f64::sqrt(3.0 * f64::from(N));
+    let error = film.error(0, 0);
+    assert!((error / expected - 1.0).abs() < 0.05, "{error}, not {expected}");
+}
+
+#[test]
+fn a_window_without_pixels_holds_nothing() {
+    for (width, height) in [(0, 5), (5, 0), (0, 0)] {
+        let none = Film::new(Window { x: 1, y: 1, width, height }, 1.0);
+        let mut film = Film::new(Window::whole([8, 8]), 1.0);
+        film.merge(&none);
+        assert_eq!(film, Film::new(Window::whole([8, 8]), 1.0));
+        assert_eq!(none.noise(0.0, Tonemap::Neutral), 0.0);
+    }
+}
+
+#[test]
 fn scales_are_finite_powers_of_two() {
     for (typical, peak) in
         [(0.0, 0.0), (1.0, 1.0), (1e-300, 1e300), (1e300, 1e300), (0.0, 1e-320), (1e-320, 0.0)]

@@ -248,3 +248,12 @@ fn the_hierarchy_finds_what_a_list_finds() {
         assert_eq!(accel.occluded(&ray, distance * 1.0001, None), listed.is_some());
     }
 }
+
+#[test]
+fn a_ray_from_a_sphere_that_does_not_know_it_meets_the_far_side() {
+    let ball = sphere(DVec3::ZERO, 1.0);
+    let ray = |direction| Ray { origin: DVec3::X, direction, start: None };
+    assert_eq!(intersect(&ball, &ray(DVec3::NEG_X), None).map(|(t, _)| t), Some(2.0));
+    assert_eq!(intersect(&ball, &ray(DVec3::X), None), None);
+    assert_eq!(intersect(&ball, &ray(DVec3::Y), None), None);
+}
