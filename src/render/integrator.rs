@@ -139,6 +139,9 @@ pub(super) fn radiance<O: Observer>(
             break;
         };
         path.scatter(&vertex, &sample, &point);
+        if path.throughput == Rgb::ZERO {
+            break;
+        }
         if sample.wi.z < 0.0 {
             tracer.dielectrics.cross(inside, hit.place.primitive, entering);
             if let Bsdf::Dielectric { eta, .. } = bsdf {
