@@ -58,7 +58,7 @@ codes! {
     E0206 "whole number wanted",
     E0207 "units of a root or a sum",
     E0301 "unknown field",
-    E0302 "missing field",
+    E0302 "missing field or thing",
     E0303 "repeated field or block",
     E0304 "conflicting fields",
     E0305 "not a thing of the scene",

@@ -76,6 +76,9 @@ pub fn compile(sources: &Sources, id: SourceId, overrides: &Overrides) -> Compil
     diagnostics.extend(found);
     let lowered = lower::lower(&things, overrides);
     diagnostics.extend(lowered.diagnostics);
+    if !diagnostic::any_errors(&diagnostics) {
+        diagnostics.extend(lower::nothing_to_see(&things));
+    }
     diagnostics.sort_by_key(|diagnostic| (diagnostic.primary.span, diagnostic.code));
     // What is wrong in a prototype is one error, however often it is used.
     diagnostics.dedup_by(|again, first| {

@@ -134,18 +134,31 @@ fn fields_table<'a>(fields: impl Iterator<Item = &'a Field>) -> String {
             Preset::Absent(words) => words.to_string(),
             Preset::Value(value) => format!("`{value}`"),
         };
+        let show = |x: f64| in_unit(x, field.ty);
         let range = match (field.range.low, field.range.high, field.range.above) {
             (f64::NEG_INFINITY, f64::INFINITY, _) => String::new(),
-            (low, f64::INFINITY, true) => format!(", above {low}"),
-            (low, f64::INFINITY, false) => format!(", {low} or more"),
-            (low, high, true) => format!(", above {low} and at most {high}"),
-            (low, high, false) => format!(", from {low} to {high}"),
+            (low, f64::INFINITY, true) => format!(", above {}", show(low)),
+            (low, f64::INFINITY, false) => format!(", {} or more", show(low)),
+            (low, high, true) => format!(", above {} and at most {}", show(low), show(high)),
+            (low, high, false) => format!(", from {} to {}", show(low), show(high)),
         };
         let doc = field.doc.replace('\n', " ").replace("  ", " ");
         let wants = rt_lang::check::describe_wanted(field.ty);
         writeln!(table, "| `{}` | {wants}{range} | {default} | {doc} |", field.name).unwrap();
     }
     table
+}
+
+/// A bound in the unit that a writer would use.
+fn in_unit(x: f64, ty: FieldType) -> String {
+    match ty {
+        FieldType::Scalar(dim) if dim != units::NONE && x != 0.0 => {
+            let unit = dim.example_unit();
+            let shown = x / units::parse_unit(&unit).unwrap().factor;
+            format!("{}{unit}", (shown * 1e6).round() / 1e6)
+        }
+        _ => x.to_string(),
+    }
 }
 
 #[test]

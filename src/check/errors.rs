@@ -44,13 +44,28 @@ fn quoted(names: &[&str]) -> String {
 pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) -> Diagnostic {
     let diagnostic =
         Diagnostic::new(code, format!("unknown {what} `{}`", name.text), name.span).at("not known here");
-    match closest(&name.text, candidates) {
+    // A unit of two letters is near to all others; only its first letter tells what was meant.
+    let start = name.text.chars().next();
+    let same_start = |guess: &&str| what != "unit" || guess.chars().next() == start;
+    match closest(&name.text, candidates).filter(same_start) {
         Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
+        None if what == "unit" && is_side(&name.text) => {
+            diagnostic.help("width and height are a pair: `(320, 240)`")
+        }
+        None if what == "unit" && name.text.starts_with(['µ', 'μ']) => {
+            diagnostic.help("micrometres are written `um`").fix(name.span, "um")
+        }
         None if what == "unit" => diagnostic.help(format!("the units are {}", quoted(candidates))),
         None if what == "kind" => diagnostic.help(format!("the kinds known here are {}", quoted(candidates))),
         None if what == "name" => diagnostic.help(format!("declare it: `let {} = …`", name.text)),
         None => diagnostic,
     }
+}
+
+/// Whether what stands behind a number is rather the rest of a size: `320x240`.
+fn is_side(unit: &str) -> bool {
+    unit.strip_prefix(['x', '×'])
+        .is_some_and(|rest| !rest.is_empty() && rest.bytes().all(|b| b.is_ascii_digit()))
 }
 
 pub(super) fn field_at_top_level(name: &Name) -> Diagnostic {
@@ -103,6 +118,13 @@ pub(super) fn cycle(names: &[&Name]) -> Diagnostic {
     let mut diagnostic = Diagnostic::new(Code::E0104, message, first.span).at("the cycle begins here");
     for pair in shown.windows(2) {
         diagnostic = diagnostic.label(pair[1].span, format!("used by `{}`", pair[0].text));
+    }
+    if names.len() == 1 && crate::color::named(&first.text).is_some() {
+        let help = format!(
+            "the name stands for what is declared here, not for the built-in colour; choose another, such as `my_{}`",
+            first.text
+        );
+        return diagnostic.help(help);
     }
     diagnostic.help(format!("break the cycle {}", path.join(" → ")))
 }
@@ -197,6 +219,9 @@ pub(super) fn unknown_field(kind: KindId, name: &Name, free: &[&str], all: &[&st
     .at("unknown field");
     match closest(&name.text, free) {
         Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
+        None if kind.get().category == Category::Shape && matches!(&*name.text, "color" | "colour") => {
+            diagnostic.help("a colour belongs to a material: `material: diffuse { color: #d94f30 }`")
+        }
         None => diagnostic.help(format!("its fields are {}", quoted(all))),
     }
 }

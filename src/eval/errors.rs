@@ -10,17 +10,20 @@ use crate::units::{self, Dim};
 
 /// A number as a person would write it.
 fn show(x: f64) -> String {
-    let size = x.abs();
+    if x == x.trunc() && x.abs() < 1e16 {
+        return format!("{x}");
+    }
+    // To twelve digits, fewer than conversions and differences leave behind: 3cm − 5cm is −0.02m.
+    let x: f64 = format!("{x:.11e}").parse().unwrap_or(x);
+    let size = f64::abs(x);
     if size != 0.0 && !(1e-4..1e7).contains(&size) { format!("{x:e}") } else { format!("{x}") }
 }
 
-/// A quantity in the unit that a writer would reach for, to twelve digits: less than conversions leave.
+/// A quantity in the unit that a writer would reach for.
 fn show_quantity(x: f64, dim: Dim) -> String {
     let unit = dim.example_unit();
     let factor = units::parse_unit(&unit).map_or(1.0, |unit| unit.factor);
-    let rounded =
-        if factor == 1.0 { x } else { format!("{:.11e}", x / factor).parse().unwrap_or(x / factor) };
-    format!("{}{unit}", show(rounded))
+    format!("{}{unit}", show(x / factor))
 }
 
 fn show_value(value: &Value) -> String {

@@ -10,6 +10,12 @@ fn start() -> Span {
     Span::new(SourceId(0), 0, 0)
 }
 
+pub(super) fn nothing_stands() -> Diagnostic {
+    Diagnostic::new(Code::E0302, "nothing stands in this scene", start())
+        .at("no shape and no light")
+        .help("a thing in the picture is a statement of its own: `sphere { radius: 1m }`")
+}
+
 pub(super) fn second(kind: &str, span: Span, first: Span) -> Diagnostic {
     Diagnostic::new(Code::E0303, format!("a second `{kind}`"), span)
         .at("again here")
@@ -90,11 +96,14 @@ pub(super) fn no_such_camera(wanted: &str, names: &[&str], place: Option<Span>) 
 }
 
 pub(super) fn which_camera(span: Span, first: Span, names: &[&str]) -> Diagnostic {
-    let name = names.first().copied().unwrap_or("wide");
+    let help = match names.first() {
+        Some(name) => format!("choose with `render {{ camera: {name} }}`, or with `--camera {name}`"),
+        None => "name them, as in `camera wide { … }`, and choose with `render { camera: wide }`".to_string(),
+    };
     Diagnostic::new(Code::E0302, "several cameras, and none is chosen", span)
         .at("another camera")
         .label(first, "a camera")
-        .help(format!("choose with `render {{ camera: {name} }}`, or with `--camera {name}`"))
+        .help(help)
 }
 
 pub(super) fn too_many_pixels(size: [u32; 2], span: Option<Span>) -> Diagnostic {

@@ -81,6 +81,12 @@ pub fn lower(things: &Things, overrides: &Overrides) -> Lowered {
     lowering.out
 }
 
+/// What is wrong with things among which there is nothing to see: asked only where nothing else is wrong.
+pub fn nothing_to_see(things: &Things) -> Option<Diagnostic> {
+    let seen = |thing: &Thing| matches!(thing.made.kind.get().category, Category::Shape | Category::Light);
+    (!things.things.iter().any(seen)).then(errors::nothing_stands)
+}
+
 struct Lowering<'a> {
     things: &'a Things,
     overrides: &'a Overrides,
@@ -125,10 +131,17 @@ impl<'a> Lowering<'a> {
         for (index, thing) in self.things.things.iter().enumerate() {
             let sound =
                 thing.made.is_sound() && thing.material.as_ref().is_none_or(|given| given.value.is_sound());
+            let kind = thing.made.kind;
+            if kind == sky::KIND {
+                if let Some(first) = sky_place {
+                    self.report(errors::second("sky", thing.made.span, first));
+                    continue;
+                }
+                sky_place = Some(thing.made.span);
+            }
             if !sound {
                 continue;
             }
-            let kind = thing.made.kind;
             if kind.get().category == Category::Shape {
                 self.surface(index, thing);
             } else if kind == light::KIND {
@@ -136,11 +149,6 @@ impl<'a> Lowering<'a> {
             } else if kind == sun::KIND {
                 self.sun(thing);
             } else if kind == sky::KIND {
-                if let Some(first) = sky_place {
-                    self.report(errors::second("sky", thing.made.span, first));
-                    continue;
-                }
-                sky_place = Some(thing.made.span);
                 let color = self.things.read(&thing.made, sky::COLOR);
                 let radiance = self.things.read(&thing.made, sky::RADIANCE);
                 self.add_light(thing, Light::Sky { radiance: color * radiance });

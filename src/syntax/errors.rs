@@ -74,6 +74,7 @@ pub(super) fn unexpected_value(token: &str, span: Span) -> Diagnostic {
             diagnostic.help("text stands in straight double quotes: `\"text\"`")
         }
         "<" => diagnostic.help("values stand in parentheses: `(0, 1, 0)m`"),
+        "−" | "–" => diagnostic.help("a minus is written `-`").fix(span, "-"),
         "+" => diagnostic.help("a positive number has no sign"),
         "!" => diagnostic.help("write `not`"),
         "=" => diagnostic.help("write one `=` or `:` and then the value"),
@@ -117,6 +118,9 @@ pub(super) fn unexpected_entry(token: &str, span: Span, top: bool) -> Diagnostic
     };
     match token {
         "#" => diagnostic.help("a comment begins with `//`"),
+        "-" => {
+            diagnostic.help("a line goes on in the next one behind an operator: end the line above with `-`")
+        }
         _ if top => diagnostic.help("begin with a kind, as in `sphere { … }`, or with `let` or `material`"),
         _ => diagnostic.help("begin with a name, as in `radius: 5cm` or `sphere { … }`"),
     }

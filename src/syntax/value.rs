@@ -252,23 +252,24 @@ fn scaled(builder: &Builder, value: Expr, depth: usize, unit: Option<Name>, span
     checked(builder, Expr { kind, span }, depth + 1, span)
 }
 
-/// The slip `<x, y, z>`, taken as the triple that it means.
+/// The slip `<x, y, z>`. Whether a unit is missing too is not asked: the mend shows one.
 fn angled(builder: &Builder, pair: Node) -> Deep<Expr> {
     let span = builder.span(&pair);
     let open = Span { end: span.start + 1, ..span };
-    if !(pair.as_str().contains(',') && pair.as_str().ends_with('>')) {
+    let is_triple = pair.as_str().contains(',');
+    let (ends, parts): (Vec<Node>, Vec<Node>) =
+        pair.into_inner().partition(|inner| inner.as_rule() == Rule::angle_end);
+    let Some(end) = ends.first().filter(|_| is_triple) else {
         builder.report(errors::unexpected_value("<", open));
         return invalid(span);
-    }
-    let close = Span { start: span.end - 1, ..span };
-    builder.report(errors::angle_brackets(span, open, close));
-    let (mut values, mut deepest) = (vec![], 0);
-    for part in pair.into_inner() {
-        let (value, depth) = expression(builder, part);
-        deepest = deepest.max(depth);
-        values.push(value);
-    }
-    checked(builder, Expr { kind: ExprKind::Tuple(values), span }, deepest + 1, span)
+    };
+    let end = builder.span(end);
+    builder.report(errors::angle_brackets(span, open, Span { end: end.start + 1, ..end }));
+    // What is wrong inside is said as well.
+    parts.into_iter().for_each(|part| {
+        expression(builder, part);
+    });
+    invalid(span)
 }
 
 // --- Literals -----------------------------------------------------------------------------------------------
