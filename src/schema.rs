@@ -1,7 +1,7 @@
 //! The one table of kinds and their fields: types, units, defaults, ranges and documentation.
 //!
 //! Checking, lowering, messages and the reference page all read it, and no field is named anywhere else: the
-//! [`kinds!`] table also yields a module a kind (`sphere::RADIUS`, …) with a typed key a field.
+//! `kinds!` table also yields a module a kind (`sphere::RADIUS`, …) with a typed key a field.
 
 mod types;
 

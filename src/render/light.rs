@@ -140,7 +140,7 @@ impl Lights {
         self.lamps.is_empty()
     }
 
-    /// Sum of the estimates of what each light gives, for [`Lights::choose`] and [`Lights::probability`].
+    /// Sum of the estimates of what each light gives, for [`Lights::choose`] and [`Lights::pdf`].
     pub fn total(&self, receiver: &Receiver) -> f64 {
         // Between one there is no choice, and nothing to estimate.
         if self.lamps.len() == 1 {

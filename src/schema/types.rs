@@ -7,7 +7,7 @@ use std::marker::PhantomData;
 /// What a kind is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Category {
-    /// A surface of the picture; takes the fields of [`PLACED`].
+    /// A surface of the picture; takes the fields of [`super::PLACED`].
     Shape,
     /// What a surface is made of.
     Material,
