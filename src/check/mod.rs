@@ -147,7 +147,7 @@ pub enum Base {
 /// Checks a file. `text` is the source the tree was read from.
 pub fn check(file: &ast::File, text: &str) -> (Program, Vec<Diagnostic>) {
     let mut checker = Checker::new(text);
-    let block = checker.block(scope::top_level(&file.body));
+    let block = checker.block(&file.body.entries);
     (Program { block }, checker.diagnostics)
 }
 

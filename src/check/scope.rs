@@ -30,11 +30,6 @@ pub(super) enum Item<'a> {
     Broken(&'a ast::Broken),
 }
 
-/// What stands at the top level of a file. Fields there are reported by [`Checker::block`].
-pub(super) fn top_level(body: &ast::Body) -> Vec<&Entry> {
-    body.entries.iter().collect()
-}
-
 impl Scope {
     /// Whether it declares this name.
     pub(super) fn knows(&self, name: &str) -> bool {
@@ -68,7 +63,7 @@ impl Item<'_> {
 
 impl Checker<'_> {
     /// Checks the top level of a file.
-    pub(super) fn block(&mut self, entries: Vec<&Entry>) -> Block {
+    pub(super) fn block(&mut self, entries: &[Entry]) -> Block {
         let mut items = vec![];
         for entry in entries {
             match entry {

@@ -15,10 +15,6 @@ pub struct Defaults {
 }
 
 impl Defaults {
-    pub(super) fn new() -> Defaults {
-        Defaults::default()
-    }
-
     /// The default of a field that has one.
     pub(super) fn read<T: Read>(&self, kind: KindId, key: Key<T>) -> T::Out {
         let index = key.index(kind);

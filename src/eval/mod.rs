@@ -69,12 +69,12 @@ pub struct Thing {
 pub fn eval(program: &Program) -> (Things, Vec<Diagnostic>) {
     let mut evaluator = Evaluator::new();
     let members = evaluator.block(&program.block);
-    let Evaluator { mut diagnostics, defaults, incomplete, .. } = evaluator;
+    let Evaluator { mut diagnostics, incomplete, .. } = evaluator;
     let mut things = Things {
         things: vec![],
         places: BTreeMap::new(),
         origins: Origins::default(),
-        defaults,
+        defaults: Defaults::default(),
         incomplete,
         added: 0,
     };
@@ -90,7 +90,6 @@ struct Evaluator {
     /// Values by slot, the innermost scope last.
     frames: Vec<Vec<Value>>,
     diagnostics: Vec<Diagnostic>,
-    defaults: Defaults,
     /// How many things were made: the next [`ThingId`].
     made: u32,
     /// How many members the groups hold, prototypes and those made from them counted alike.
@@ -101,14 +100,7 @@ struct Evaluator {
 
 impl Evaluator {
     fn new() -> Evaluator {
-        Evaluator {
-            frames: vec![],
-            diagnostics: vec![],
-            defaults: Defaults::new(),
-            made: 0,
-            held: 0,
-            incomplete: false,
-        }
+        Evaluator { frames: vec![], diagnostics: vec![], made: 0, held: 0, incomplete: false }
     }
 
     fn report(&mut self, diagnostic: Diagnostic) -> Value {

@@ -1,0 +1,268 @@
+//! What can be wrong with types and units.
+
+use crate::check::functions::Function;
+use crate::check::make::suggested_unit;
+use crate::check::types::{Element, Type, describe_wanted, list};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::schema::{Field, FieldType, Word};
+use crate::span::Span;
+use crate::syntax::ast::Name;
+use crate::units::{self, Dim};
+
+/// A field's value is of another type. `text` is the value as written.
+pub(in crate::check) fn mismatch(field: &Field, span: Span, text: &str, ty: Type) -> Diagnostic {
+    let wanted = describe_wanted(field.ty);
+    let message = format!("`{}` wants {wanted}, this is {}", field.name, ty.describe());
+    let code = mismatch_code(field.ty, ty);
+    let diagnostic = Diagnostic::new(code, message, span).at(ty.describe());
+    match code {
+        Code::E0202 | Code::E0204 => with_unit(diagnostic, text, suggested_unit(field.ty)),
+        Code::E0203 => match suggested_unit(field.ty) {
+            Some(unit) => diagnostic.help(format!("write {wanted}, such as `{}`", sample(field.ty, &unit))),
+            None if text.starts_with('(') => diagnostic.help("leave the unit away: a direction has none"),
+            None => diagnostic.help("divide by a unit to make it a plain number: `x / 1m`"),
+        },
+        Code::E0205 => diagnostic.help(color_help(text, ty)),
+        Code::E0206 => diagnostic.help("whole numbers have no decimal point; `round(…)` makes one"),
+        Code::E0305 => match field.ty {
+            FieldType::Named(kind) => {
+                diagnostic.help(format!("name one that stands by itself: `{kind} NAME {{ … }}`"))
+            }
+            _ => diagnostic.help("name a thing that stands in the picture: `sphere ball { … }`"),
+        },
+        _ => match (field.ty, ty) {
+            (FieldType::Choice(words), _) => diagnostic.help(word_list(words)),
+            (FieldType::Tuple(..) | FieldType::IntTuple(_), _) => {
+                diagnostic.help(format!("write `{}: {}`", field.name, example_tuple(field.ty)))
+            }
+            (FieldType::Made(_), _) => diagnostic.help("such as `diffuse { color: #d94f30 }`"),
+            (FieldType::Transform, _) => {
+                diagnostic.help("such as `scale(2) |> turn(z: 10deg) |> move(0, 1m, 0)`")
+            }
+            (ty, _) => match suggested_unit(ty) {
+                Some(unit) => diagnostic.help(format!("such as `{}`", sample(ty, &unit))),
+                None => diagnostic,
+            },
+        },
+    }
+}
+
+fn mismatch_code(wanted: FieldType, ty: Type) -> Code {
+    match (wanted, ty) {
+        (FieldType::OneOf(types), _) => {
+            let codes = types.iter().map(|wanted| mismatch_code(*wanted, ty));
+            codes.filter(|code| *code != Code::E0201).min().unwrap_or(Code::E0201)
+        }
+        (FieldType::Color, Type::Scalar(_) | Type::Tuple(3, _)) => Code::E0205,
+        (FieldType::Int, Type::Scalar(e)) | (FieldType::IntTuple(2), Type::Tuple(2, e))
+            if e.fits(units::NONE) =>
+        {
+            Code::E0206
+        }
+        (FieldType::Scalar(dim), Type::Scalar(e)) => unit_code(dim, e),
+        (FieldType::Tuple(m, dim), Type::Tuple(n, e)) if m == n => unit_code(dim, e),
+        (FieldType::Int, Type::Scalar(_)) | (FieldType::IntTuple(2), Type::Tuple(2, _)) => Code::E0203,
+        (FieldType::Target, Type::Made(..)) | (FieldType::Target | FieldType::Named(_), Type::Thing(_)) => {
+            Code::E0305
+        }
+        (FieldType::Named(_), Type::Made(..)) => Code::E0305,
+        _ => Code::E0201,
+    }
+}
+
+fn unit_code(wanted: Dim, found: Element) -> Code {
+    match found.dim() == units::NONE {
+        true if wanted == units::ANGLE => Code::E0204,
+        true => Code::E0202,
+        false => Code::E0203,
+    }
+}
+
+/// Help for a bare number where a quantity is wanted; a literal can be mended blindly only by its author, who
+/// alone knows the unit, so no edit is offered.
+fn with_unit(diagnostic: Diagnostic, text: &str, unit: Option<String>) -> Diagnostic {
+    let Some(unit) = unit else { return diagnostic };
+    let text = if text.is_empty() || text.len() > 40 || text.contains(['\n', '<']) { "(…)" } else { text };
+    let bare = text.starts_with('(') || text.bytes().all(|b| b.is_ascii_digit() || b == b'.');
+    let shown = if bare { text.to_string() } else { format!("({text})") };
+    let help = match unit.as_str() {
+        "m" => format!("write `{shown}m`, `{shown}cm` or `{shown}mm`"),
+        unit => format!("write `{shown}{unit}`"),
+    };
+    diagnostic.help(help)
+}
+
+fn sample(ty: FieldType, unit: &str) -> String {
+    match ty {
+        FieldType::OneOf(types) => types
+            .iter()
+            .find(|ty| suggested_unit(**ty).is_some())
+            .map_or(String::new(), |ty| sample(*ty, unit)),
+        FieldType::Tuple(..) => example_tuple(ty),
+        _ if unit == "m" => "8cm".into(),
+        _ => format!("30{unit}"),
+    }
+}
+
+fn example_tuple(ty: FieldType) -> String {
+    match ty {
+        FieldType::IntTuple(_) => "(640, 480)".into(),
+        FieldType::Tuple(_, dim) => format!("(1, 2, 3){}", dim.example_unit()),
+        _ => "…".into(),
+    }
+}
+
+fn word_list(words: &[Word]) -> String {
+    list(words.iter().map(|word| format!("`{}`", word.name)).collect(), "or")
+}
+
+fn color_help(text: &str, ty: Type) -> String {
+    match ty {
+        Type::Tuple(..) if text.starts_with('(') && text.ends_with(')') && text.len() < 60 => {
+            format!("write `rgb{text}` for a linear colour, `srgb{text}` for one as colour pickers show it")
+        }
+        _ => "write `#d94f30`, `rgb(1, 0.5, 0)` or a name such as `orange`".into(),
+    }
+}
+
+pub(in crate::check) fn component(span: Span, text: &str, found: Element, others: Element) -> Diagnostic {
+    let (found_text, others_text) = (Type::Scalar(found).describe(), Type::Scalar(others).describe());
+    let message = format!("one component is {found_text}, another {others_text}");
+    let code = match (found.dim() == units::NONE, others.dim()) {
+        (true, units::ANGLE) => Code::E0204,
+        (true, _) => Code::E0202,
+        (false, _) => Code::E0203,
+    };
+    let diagnostic = Diagnostic::new(code, message, span).at(found_text);
+    match code {
+        Code::E0203 => diagnostic.help("the components of a triple have one dimension"),
+        _ => with_unit(diagnostic, text, Some(others.dim().example_unit())),
+    }
+}
+
+pub(in crate::check) fn component_not_number(span: Span, ty: Type) -> Diagnostic {
+    Diagnostic::new(
+        Code::E0201,
+        format!("a component is a number or a quantity, this is {}", ty.describe()),
+        span,
+    )
+    .at(ty.describe())
+}
+
+pub(in crate::check) fn long_tuple(span: Span, count: usize) -> Diagnostic {
+    Diagnostic::new(Code::E0201, format!("{count} components, where two or three are possible"), span)
+        .at(format!("{count} components"))
+}
+
+pub(in crate::check) fn unit_on_quantity(unit: &Name, value: Span, ty: Type) -> Diagnostic {
+    let message = match ty {
+        Type::Scalar(_) | Type::Tuple(..) => "this has a unit already".to_string(),
+        _ => format!("a unit goes on numbers, this is {}", ty.describe()),
+    };
+    Diagnostic::new(Code::E0201, message, unit.span)
+        .at("a second unit")
+        .label(value, ty.describe())
+        .help("remove one of them")
+}
+
+pub(in crate::check) fn no_member(member: &Name, ty: Type) -> Diagnostic {
+    let help = match ty {
+        Type::Tuple(2, _) => "it has `.x` and `.y`",
+        Type::Tuple(..) => "it has `.x`, `.y` and `.z`",
+        _ => "a triple has `.x`, `.y` and `.z`",
+    };
+    Diagnostic::new(Code::E0101, format!("no member `{}` in {}", member.text, ty.describe()), member.span)
+        .at("unknown member")
+        .help(help)
+}
+
+pub(in crate::check) fn operand(symbol: &str, wanted: &str, span: Span, ty: Type) -> Diagnostic {
+    Diagnostic::new(Code::E0201, format!("`{symbol}` wants {wanted}, this is {}", ty.describe()), span)
+        .at(ty.describe())
+}
+
+pub(in crate::check) fn operands(symbol: &str, at: Span, [a, b]: [(Span, Type); 2]) -> Diagnostic {
+    let message = format!("`{symbol}` cannot join {} and {}", a.1.describe(), b.1.describe());
+    Diagnostic::new(Code::E0201, message, at)
+        .at("these do not fit")
+        .label(a.0, a.1.describe())
+        .label(b.0, b.1.describe())
+}
+
+pub(in crate::check) fn sum(symbol: &str, at: Span, [a, b]: [(Span, Type); 2]) -> Diagnostic {
+    let message =
+        format!("`{symbol}` wants two of one dimension, these are {} and {}", a.1.describe(), b.1.describe());
+    let diagnostic = Diagnostic::new(Code::E0207, message, at).at("these do not add up");
+    let bare = [a, b]
+        .iter()
+        .any(|(_, ty)| matches!(ty, Type::Scalar(e) | Type::Tuple(_, e) if e.dim() == units::NONE));
+    let diagnostic = diagnostic.label(a.0, a.1.describe()).label(b.0, b.1.describe());
+    if bare { diagnostic.help("give the number the unit of the other") } else { diagnostic }
+}
+
+pub(in crate::check) fn exponent(at: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0207, "the exponents of this unit grow beyond reason", at).at("too high a power")
+}
+
+pub(in crate::check) fn root(span: Span, ty: Type) -> Diagnostic {
+    Diagnostic::new(Code::E0207, format!("the root of {} has no unit", ty.describe()), span)
+        .at(ty.describe())
+        .help("the exponents must be even: the root of `m2` is `m`")
+}
+
+pub(in crate::check) fn argument_count(function: Function, span: Span, count: usize) -> Diagnostic {
+    let arguments = if count == 1 { "1 argument".to_string() } else { format!("{count} arguments") };
+    Diagnostic::new(Code::E0201, format!("`{}` does not take {arguments}", function.name()), span)
+        .at(arguments)
+        .help(format!("call it as `{}`. {}", function.signature(), function.doc()))
+}
+
+pub(in crate::check) fn turn_axis(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0201, "`turn` turns about one axis, `x`, `y` or `z`", span)
+        .at("about which axis?")
+        .help("such as `turn(y: 30deg)`; chain several with `|>`")
+}
+
+pub(in crate::check) fn named_argument(function: Function, name: &Name) -> Diagnostic {
+    Diagnostic::new(Code::E0201, format!("`{}` does not name its arguments", function.name()), name.span)
+        .at("a name here")
+        .help(format!("call it as `{}`", function.signature()))
+}
+
+pub(in crate::check) fn argument(
+    function: Function,
+    wanted: Dim,
+    span: Span,
+    text: &str,
+    ty: Type,
+) -> Diagnostic {
+    let message = format!("`{}` wants {wanted}, this is {}", function.name(), ty.describe());
+    let code = match ty {
+        Type::Scalar(element) => unit_code(wanted, element),
+        _ => Code::E0201,
+    };
+    let diagnostic = Diagnostic::new(code, message, span).at(ty.describe());
+    match code {
+        Code::E0202 | Code::E0204 => with_unit(diagnostic, text, Some(wanted.example_unit())),
+        Code::E0203 if wanted == units::NONE => {
+            diagnostic.help("divide by a unit to make it a plain number: `x / 1m`")
+        }
+        _ => diagnostic,
+    }
+}
+
+pub(in crate::check) fn triple_wanted(
+    function: Function,
+    span: Span,
+    ty: Type,
+    dim: Option<Dim>,
+) -> Diagnostic {
+    let of = dim.map_or("a triple".to_string(), |dim| describe_wanted(FieldType::Tuple(3, dim)));
+    let code = match (ty, dim) {
+        (Type::Tuple(3, element), Some(dim)) => unit_code(dim, element),
+        _ => Code::E0201,
+    };
+    Diagnostic::new(code, format!("`{}` wants {of}, this is {}", function.name(), ty.describe()), span)
+        .at(ty.describe())
+        .help(format!("call it as `{}`", function.signature()))
+}
