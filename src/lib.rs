@@ -11,6 +11,7 @@
 //! | module | what it holds | what it does not know |
 //! |---|---|---|
 //! | [`span`], [`source`], [`diagnostic`] | places, texts, what is said of them | terminals |
+//! | [`files`] | what a scene may read | the disk |
 //! | [`math`], [`color`], [`units`], [`develop`] | arithmetic with the same bits everywhere | the language |
 //! | [`schema`] | the one table of kinds and fields | how they are checked or drawn |
 //! | [`syntax`] | text to tree; never fails | names, types, the scene |
@@ -27,6 +28,7 @@ pub mod color;
 pub mod develop;
 pub mod diagnostic;
 pub mod eval;
+pub mod files;
 pub mod lower;
 pub mod math;
 pub mod output;

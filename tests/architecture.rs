@@ -9,6 +9,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ("span", &[]),
     ("source", &["span"]),
     ("diagnostic", &["span"]),
+    ("files", &[]),
     ("math", &[]),
     ("color", &["math"]),
     ("units", &["math"]),
