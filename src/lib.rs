@@ -12,6 +12,7 @@
 //! |---|---|---|
 //! | [`span`], [`source`], [`diagnostic`] | places, texts, what is said of them | terminals |
 //! | [`files`] | what a scene may read | the disk |
+//! | [`asset`] | the bytes of pictures to values | where the bytes came from |
 //! | [`math`], [`color`], [`units`], [`develop`] | arithmetic with the same bits everywhere | the language |
 //! | [`schema`] | the one table of kinds and fields | how they are checked or drawn |
 //! | [`syntax`] | text to tree; never fails | names, types, the scene |
@@ -23,6 +24,7 @@
 //! | [`output`] | film to the bytes of image files, and back | files |
 //! | [`report`] | diagnostics to text for a person | what they are about |
 
+pub mod asset;
 pub mod check;
 pub mod color;
 pub mod develop;
@@ -43,6 +45,7 @@ pub mod units;
 
 use diagnostic::{Code, Diagnostic};
 use eval::Origins;
+use files::Files;
 use lower::Overrides;
 use scene::Scene;
 use source::Sources;
@@ -64,8 +67,8 @@ pub struct Compiled {
 }
 
 /// Compiles a source to a scene: parse, check, evaluate, lower. Every stage runs, also after errors, so that
-/// one run reports all that is wrong.
-pub fn compile(sources: &Sources, id: SourceId, overrides: &Overrides) -> Compiled {
+/// one run reports all that is wrong. `files` is what the source may read.
+pub fn compile(sources: &Sources, id: SourceId, overrides: &Overrides, files: &dyn Files) -> Compiled {
     let text = &sources.get(id).text;
     let (tree, mut diagnostics) = syntax::parse(id, text);
     let (program, found) = check::check(&tree, text);
@@ -76,7 +79,7 @@ pub fn compile(sources: &Sources, id: SourceId, overrides: &Overrides) -> Compil
     }
     let (things, found) = eval::eval(&program);
     diagnostics.extend(found);
-    let lowered = lower::lower(&things, overrides);
+    let lowered = lower::lower(&things, overrides, files);
     diagnostics.extend(lowered.diagnostics);
     if !diagnostic::any_errors(&diagnostics) {
         diagnostics.extend(lower::nothing_to_see(&things));

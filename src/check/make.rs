@@ -294,13 +294,15 @@ fn broken_rule(kind: KindId, given: FieldSet, place: Span) -> Option<Diagnostic>
 }
 
 /// Whether a value of a type can stand in a field.
-fn accepts(field: FieldType, ty: Type) -> bool {
+pub(super) fn accepts(field: FieldType, ty: Type) -> bool {
     match (field, ty) {
         (_, Type::Invalid) => true,
         (FieldType::Scalar(dim), Type::Scalar(element)) => element.fits(dim),
         (FieldType::Int, Type::Scalar(element)) => element.is_int(),
         (FieldType::Bool, Type::Bool) => true,
         (FieldType::Color, Type::Color) => true,
+        (FieldType::Paint, Type::Color | Type::Texture) => true,
+        (FieldType::Text, Type::Text) => true,
         (FieldType::Tuple(_, _), Type::Scalar(Element::Zero)) => true,
         (FieldType::Tuple(count, dim), Type::Tuple(given, element)) => count == given && element.fits(dim),
         (FieldType::IntTuple(count), Type::Tuple(given, element)) => count == given && element.is_int(),

@@ -10,6 +10,7 @@ use super::{Exit, Problem};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use rt_lang::compile;
 use rt_lang::diagnostic::Severity;
+use rt_lang::files::NoFiles;
 use rt_lang::lower::Overrides;
 use rt_lang::output::{Depth, Facts, Format, Picture, encode};
 use rt_lang::render::{Cancelled, Control, Rendered, Shown, Tracer, Window};
@@ -151,7 +152,7 @@ fn build(context: &Context, job: &Job) -> Result<Exit, Problem> {
         terminal.diagnostics(&[refused], &input.sources);
         return Ok(Exit::Diagnostics);
     }
-    let mut compiled = compile(&input.sources, input.id, &overrides(arguments));
+    let mut compiled = compile(&input.sources, input.id, &overrides(arguments), &NoFiles);
     if arguments.quiet {
         compiled.diagnostics.retain(|diagnostic| diagnostic.severity() == Severity::Error);
     }

@@ -6,6 +6,7 @@ use super::input;
 use super::terminal::Terminal;
 use rt_lang::compile;
 use rt_lang::diagnostic::any_errors;
+use rt_lang::files::NoFiles;
 use rt_lang::lower::Overrides;
 use std::path::Path;
 
@@ -25,7 +26,7 @@ fn check(file: &Path, terminal: Terminal) -> Exit {
     };
     let diagnostics = match input.refused {
         Some(refused) => vec![refused],
-        None => compile(&input.sources, input.id, &Overrides::default()).diagnostics,
+        None => compile(&input.sources, input.id, &Overrides::default(), &NoFiles).diagnostics,
     };
     terminal.diagnostics(&diagnostics, &input.sources);
     if any_errors(&diagnostics) { Exit::Diagnostics } else { Exit::Done }

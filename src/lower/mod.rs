@@ -5,16 +5,22 @@ mod camera;
 mod errors;
 mod material;
 mod shape;
+mod sky;
+mod texture;
 
 use crate::color::Rgb;
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Thing, ThingId, Things};
-use crate::math::DVec3;
+use crate::files::Files;
+use crate::math::{DAffine3, DVec3};
 use crate::scene::shape::Bounds;
-use crate::scene::{Develop, Light, Material, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace};
-use crate::schema::{Category, DEFAULT_SAMPLES, light, render, sky, sun};
+use crate::scene::{
+    Develop, FrameId, Light, Material, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace,
+};
+use crate::schema::{self, Category, DEFAULT_SAMPLES, light, render, sun};
 use crate::span::Span;
 use material::Materials;
+use texture::Textures;
 
 /// The most pixels a picture may have.
 pub const MAX_PIXELS: u64 = 100_000_000;
@@ -50,12 +56,14 @@ pub struct Lowered {
 }
 
 /// Lowers the things of a picture. Things with errors, which were reported, are left out.
-pub fn lower(things: &Things, overrides: &Overrides) -> Lowered {
+pub fn lower(things: &Things, overrides: &Overrides, files: &dyn Files) -> Lowered {
     let mut lowering = Lowering {
         things,
         overrides,
         primitives: vec![],
         materials: Materials::default(),
+        textures: Textures::new(files),
+        frames: vec![],
         lights: vec![],
         extents: vec![Extent::Nowhere; things.things.len()],
         bare: 0,
@@ -69,9 +77,13 @@ pub fn lower(things: &Things, overrides: &Overrides) -> Lowered {
     if let (Some(camera), Some(size)) = (camera, size) {
         let (trace, tonemap) = lowering.trace(&blocks, size);
         lowering.warn_inside(camera.0.position, blocks.camera);
+        let (textures, images) = lowering.textures.finish();
         lowering.out.scene = Some(Scene {
             primitives: lowering.primitives,
             materials: lowering.materials.finish(),
+            textures,
+            images,
+            frames: lowering.frames,
             lights: lowering.lights,
             camera: camera.0,
             trace,
@@ -92,6 +104,8 @@ struct Lowering<'a> {
     overrides: &'a Overrides,
     primitives: Vec<Primitive>,
     materials: Materials,
+    textures: Textures<'a>,
+    frames: Vec<DAffine3>,
     lights: Vec<Light>,
     /// By thing.
     extents: Vec<Extent>,
@@ -132,7 +146,7 @@ impl<'a> Lowering<'a> {
             let sound =
                 thing.made.is_sound() && thing.material.as_ref().is_none_or(|given| given.value.is_sound());
             let kind = thing.made.kind;
-            if kind == sky::KIND {
+            if kind == schema::sky::KIND {
                 if let Some(first) = sky_place {
                     self.report(errors::second("sky", thing.made.span, first));
                     continue;
@@ -148,10 +162,8 @@ impl<'a> Lowering<'a> {
                 self.lamp(index, thing);
             } else if kind == sun::KIND {
                 self.sun(thing);
-            } else if kind == sky::KIND {
-                let color = self.things.read(&thing.made, sky::COLOR);
-                let radiance = self.things.read(&thing.made, sky::RADIANCE);
-                self.add_light(thing, Light::Sky { radiance: color * radiance });
+            } else if kind == schema::sky::KIND {
+                self.sky(thing);
             }
         }
     }
@@ -164,7 +176,7 @@ impl<'a> Lowering<'a> {
         let extent = shape.bounds().map_or(Extent::Endless, Extent::Box);
         self.extents[index] = extent;
         let material = match &thing.material {
-            Some(given) => match material::lower(self.things, given, &shape) {
+            Some(given) => match material::lower(&mut self.textures, self.things, given, &shape) {
                 Ok(material) => material,
                 Err(diagnostic) => return self.report(self.used_at(thing, *diagnostic)),
             },
@@ -173,12 +185,16 @@ impl<'a> Lowering<'a> {
                 material::bare(self.things)
             }
         };
-        self.add_surface(shape, material, thing.origin);
+        let frame = material.texture().map(|_| {
+            self.frames.push(thing.world_from_object.inverse());
+            FrameId(self.frames.len() as u32 - 1)
+        });
+        self.add_surface(shape, material, frame, thing.origin);
     }
 
-    fn add_surface(&mut self, shape: Shape, material: Material, origin: OriginId) {
+    fn add_surface(&mut self, shape: Shape, material: Material, frame: Option<FrameId>, origin: OriginId) {
         let material = self.materials.add(material);
-        self.primitives.push(Primitive { shape, material, origin });
+        self.primitives.push(Primitive { shape, material, frame, origin });
     }
 
     /// A lamp: a point, or a glowing sphere.
@@ -206,7 +222,7 @@ impl<'a> Lowering<'a> {
                 if !radiance.is_finite() {
                     return self.report(self.used_at(thing, errors::glows_beyond(made.span)));
                 }
-                self.add_surface(shape, Material::Emitter { radiance }, thing.origin);
+                self.add_surface(shape, Material::Emitter { radiance, pattern: None }, None, thing.origin);
             }
             Err(diagnostic) => self.report(self.used_at(thing, *diagnostic)),
         }
@@ -228,7 +244,7 @@ impl<'a> Lowering<'a> {
         let finite = match light {
             Light::Point { intensity, .. } => intensity.is_finite(),
             Light::Sun { irradiance, .. } => irradiance.is_finite(),
-            Light::Sky { radiance } => radiance.is_finite(),
+            Light::Sky { radiance, .. } => radiance.is_finite(),
         };
         match finite {
             true => self.lights.push(light),
@@ -354,7 +370,7 @@ impl<'a> Lowering<'a> {
                 .iter()
                 .any(|thing| thing.made.kind.get().category == Category::Light || !thing.made.is_sound());
             if !lights {
-                self.lights.push(Light::Sky { radiance: Rgb::ONE });
+                self.lights.push(Light::Sky { radiance: Rgb::ONE, panorama: None });
                 self.out.notes.push("no light: a soft white sky, as `sky {}`".into());
             }
         }

@@ -75,7 +75,7 @@ fn a_glowing_sphere_may_be_partly_below_the_horizon() {
 #[test]
 fn a_sky_lights_evenly() {
     assert_shows(&floor_below().with_sky(2.0), 100, 2.0, 1e-9);
-    let rough = Material::Metal { color: Rgb::ONE, alpha: 0.5 };
+    let rough = Material::Metal { color: Rgb::ONE.into(), alpha: 0.5 };
     let below = scene(v(0.0, -3.0, 0.0), DVec3::ZERO).with(floor(), rough).with_sky(1.0);
     assert_shows(&below, 10, measure(&Tracer::new(&below), 10).0, 0.0);
 }
@@ -124,8 +124,8 @@ fn lamps() -> Vec<(&'static str, Scene)> {
 fn gathering_and_finding_agree() {
     for material in [
         white(),
-        Material::Metal { color: Rgb::ONE, alpha: 0.3 },
-        Material::Plastic { color: Rgb::splat(0.7), ior: 1.5, alpha: 0.2 },
+        Material::Metal { color: Rgb::ONE.into(), alpha: 0.3 },
+        Material::Plastic { color: Rgb::splat(0.7).into(), ior: 1.5, alpha: 0.2 },
         Material::Dielectric { ior: 1.5, absorption: Rgb::ZERO, alpha: 0.4 },
     ] {
         for (name, mut scene) in lamps() {
@@ -229,10 +229,10 @@ fn bounces_count_scattering() {
     // Two mirrors: each reflection is one.
     let mirrors = |bounces| {
         scene(v(0.5, 1.0, 0.0), v(0.0, 0.0, 0.0))
-            .with(floor(), Material::Mirror { color: Rgb::ONE })
+            .with(floor(), Material::Mirror { color: Rgb::ONE.into() })
             .with(
                 Shape::Plane { point: v(-1.0, 0.0, 0.0), normal: DVec3::X },
-                Material::Mirror { color: Rgb::ONE },
+                Material::Mirror { color: Rgb::ONE.into() },
             )
             .with_sky(1.0)
             .bounces(bounces)
@@ -256,7 +256,7 @@ fn without_indirect_light_one_rough_scattering_is_all() {
     let direct = 10.0 / 9.25 * (0.5 / f64::sqrt(9.25)) / PI;
     assert!((corner(false, white()) / direct - 1.0).abs() < 1e-4);
     assert!(corner(true, white()) > 1.1 * direct);
-    let mirror = Material::Mirror { color: Rgb::ONE };
+    let mirror = Material::Mirror { color: Rgb::ONE.into() };
     let wall = corner(false, mirror);
     assert!(wall > 0.0, "a mirror shows the lit wall");
 }
