@@ -21,16 +21,20 @@
 //! | [`scene`] | the picture in its simplest form | where it came from |
 //! | [`render`] | scene to film; cannot fail | places, files, syntax |
 //! | [`output`] | film to the bytes of image files, and back | files |
-//! | [`report`] | diagnostics to text for a person | what they are about |
+//! | [`explain`] | the page on each diagnostic | how it is shown |
+//! | [`mend`] | applying the edits that diagnostics offer | files |
+//! | [`report`] | diagnostics to text, for a person or a program | what they are about |
 
 pub mod check;
 pub mod color;
 pub mod develop;
 pub mod diagnostic;
 pub mod eval;
+pub mod explain;
 pub mod files;
 pub mod lower;
 pub mod math;
+pub mod mend;
 pub mod output;
 pub mod render;
 pub mod report;

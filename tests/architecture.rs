@@ -22,7 +22,9 @@ const EDGES: &[(&str, &[&str])] = &[
     ("lower", &["span", "diagnostic", "math", "color", "schema", "eval", "scene"]),
     ("render", &["math", "color", "develop", "scene"]),
     ("output", &["math", "color", "develop", "scene"]),
-    ("report", &["span", "source", "diagnostic"]),
+    ("explain", &["diagnostic"]),
+    ("mend", &["span", "diagnostic"]),
+    ("report", &["span", "source", "diagnostic", "explain"]),
 ];
 
 #[test]
