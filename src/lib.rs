@@ -22,6 +22,7 @@
 //! | [`render`] | scene to film; cannot fail | places, files, syntax |
 //! | [`output`] | film to the bytes of image files, and back | files |
 //! | [`explain`] | the page on each diagnostic | how it is shown |
+//! | [`inventory`] | what stands in a picture, counted | how it is shown |
 //! | [`mend`] | applying the edits that diagnostics offer | files |
 //! | [`report`] | diagnostics to text, for a person or a program | what they are about |
 
@@ -32,6 +33,7 @@ pub mod diagnostic;
 pub mod eval;
 pub mod explain;
 pub mod files;
+pub mod inventory;
 pub mod lower;
 pub mod math;
 pub mod mend;
@@ -47,6 +49,7 @@ pub mod units;
 
 use diagnostic::{Code, Diagnostic};
 use eval::Origins;
+use inventory::Inventory;
 use lower::Overrides;
 use scene::Scene;
 use source::Sources;
@@ -63,6 +66,8 @@ pub struct Compiled {
     pub diagnostics: Vec<Diagnostic>,
     /// One line for each default that was chosen for the user.
     pub notes: Vec<String>,
+    /// What stands in the picture.
+    pub inventory: Inventory,
     /// Where the source says how noisy the picture may be.
     noise: Option<Span>,
 }
@@ -91,10 +96,29 @@ pub fn compile(sources: &Sources, id: SourceId, overrides: &Overrides) -> Compil
         (again.code, &again.primary, &again.message) == (first.code, &first.primary, &first.message)
     });
     let scene = lowered.scene.filter(|_| !diagnostic::any_errors(&diagnostics));
-    Compiled { scene, origins: things.origins, diagnostics, notes: lowered.notes, noise: lowered.noise }
+    Compiled {
+        scene,
+        inventory: Inventory::of(&things),
+        origins: things.origins,
+        diagnostics,
+        notes: lowered.notes,
+        noise: lowered.noise,
+    }
 }
 
 impl Compiled {
+    /// What there is to say of a source that is not worth compiling.
+    pub fn refused(diagnostic: Diagnostic) -> Compiled {
+        Compiled {
+            scene: None,
+            origins: Origins::default(),
+            inventory: Inventory::default(),
+            diagnostics: vec![diagnostic],
+            notes: vec![],
+            noise: None,
+        }
+    }
+
     /// The warning of a render that ended noisier than the source asks for: `noise`, as a share of white, after
     /// so many samples a pixel.
     pub fn noise_not_reached(&self, noise: f64, samples: u32) -> Diagnostic {

@@ -21,7 +21,9 @@ pub fn mend(text: &str, source: SourceId, diagnostics: &[Diagnostic]) -> Option<
     let mut applied = vec![];
     for (index, diagnostic) in diagnostics.iter().enumerate() {
         let Some(fix) = &diagnostic.fix else { continue };
-        let free = |span: Span| edits.range(..=span.end).next_back().is_none_or(|(_, (other, _))| !touch(*other, span));
+        let free = |span: Span| {
+            edits.range(..=span.end).next_back().is_none_or(|(_, (other, _))| !touch(*other, span))
+        };
         if !fix.edits.is_empty() && fits(fix, text, source) && fix.edits.iter().all(|(span, _)| free(*span)) {
             edits.extend(fix.edits.iter().map(|(span, text)| (span.start, (*span, text.as_str()))));
             applied.push(index);
@@ -40,7 +42,8 @@ pub fn mend(text: &str, source: SourceId, diagnostics: &[Diagnostic]) -> Option<
 
 /// Whether all edits lie within a source, and not on each other.
 fn fits(fix: &Fix, text: &str, source: SourceId) -> bool {
-    let inside = |span: Span| span.source == source && span.start <= span.end && text.get(span.range()).is_some();
+    let inside =
+        |span: Span| span.source == source && span.start <= span.end && text.get(span.range()).is_some();
     let spans: Vec<Span> = fix.edits.iter().map(|(span, _)| *span).collect();
     let apart = |(at, span): (usize, &Span)| !spans[..at].iter().any(|other| touch(*other, *span));
     spans.iter().all(|span| inside(*span)) && spans.iter().enumerate().all(apart)
@@ -72,7 +75,8 @@ mod tests {
 
     #[test]
     fn edits_that_touch_wait() {
-        let mended = mend("abcdef", SOURCE, &[at(1, 3, "X"), at(2, 4, "Y"), at(3, 3, "Z"), at(5, 6, "W")]).unwrap();
+        let mended =
+            mend("abcdef", SOURCE, &[at(1, 3, "X"), at(2, 4, "Y"), at(3, 3, "Z"), at(5, 6, "W")]).unwrap();
         assert_eq!((mended.text.as_str(), mended.applied.as_slice()), ("aXdeW", &[0, 3][..]));
     }
 

@@ -23,6 +23,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ("render", &["math", "color", "develop", "scene"]),
     ("output", &["math", "color", "develop", "scene"]),
     ("explain", &["diagnostic"]),
+    ("inventory", &["schema", "eval", "scene"]),
     ("mend", &["span", "diagnostic"]),
     ("report", &["span", "source", "diagnostic", "explain"]),
 ];

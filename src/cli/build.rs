@@ -1,15 +1,15 @@
 //! `rtc build`: scenes to pictures.
 
 use super::args::{Build, Exposure};
-use super::input::{self, is_standard};
+use super::input::is_standard;
 use super::interrupt::Interrupt;
+use super::messages::{Messenger, on_standard_output};
 use super::progress::{Progress, duration};
 use super::target::{Staged, Target};
 use super::terminal::Terminal;
-use super::{Exit, Problem};
+use super::{Exit, Problem, scene as scenes};
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use rt_lang::compile;
-use rt_lang::diagnostic::Severity;
+use rt_lang::diagnostic::Diagnostic;
 use rt_lang::lower::Overrides;
 use rt_lang::output::{Depth, Facts, Format, Picture, encode};
 use rt_lang::render::{Cancelled, Control, Rendered, Shown, Tracer, Window};
@@ -49,13 +49,16 @@ pub fn run(arguments: &Build, terminal: Terminal, interrupt: &Interrupt) -> Resu
     let threads = ThreadPoolBuilder::new().num_threads(arguments.threads.unwrap_or(0)).build();
     let threads = threads.map_err(|error| Problem::new(format!("cannot start the threads: {error}")))?;
     let context = Context { arguments, threads, terminal, interrupt };
-    let exits = jobs.iter().map(|job| {
-        build(&context, job).unwrap_or_else(|problem| {
+    let mut messenger = Messenger::new(&arguments.messages, terminal, arguments.quiet);
+    let mut worst = Exit::Done;
+    for job in &jobs {
+        worst = worst.max(build(&context, job, &mut messenger).unwrap_or_else(|problem| {
             terminal.problem(&problem);
             Exit::Usage
-        })
-    });
-    Ok(exits.max().unwrap_or(Exit::Done))
+        }));
+    }
+    messenger.finish()?;
+    Ok(worst)
 }
 
 /// What goes where. Everything that can be seen to be wrong before a file is read is found here.
@@ -91,6 +94,10 @@ fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
     }
     refuse_inputs_as_outputs(scenes, &all)?;
     refuse_idle_depth(arguments.look.bits, &all)?;
+    if on_standard_output(&arguments.messages) && all.iter().any(|target| is_standard(&target.path)) {
+        let problem = Problem::new("the picture and the messages would both go to standard output");
+        return Err(problem.help("write the picture to a file, or use `--message-format short`"));
+    }
     Ok(jobs)
 }
 
@@ -143,34 +150,32 @@ fn same(path: &Path) -> PathBuf {
     fs::canonicalize(path).ok().or_else(in_folder).unwrap_or_else(|| path.into())
 }
 
-fn build(context: &Context, job: &Job) -> Result<Exit, Problem> {
+fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit, Problem> {
     let Context { arguments, terminal, .. } = *context;
     let start = Instant::now();
-    let input = input::read(&job.scene)?;
-    if let Some(refused) = input.refused {
-        terminal.diagnostics(&[refused], &input.sources);
+    let loaded = scenes::load(&job.scene, &arguments.reading, &overrides(arguments))?;
+    let compiled = &loaded.compiled;
+    let mut exit = messenger.say(&compiled.diagnostics, &loaded.sources)?;
+    let Some(scene) = compiled.scene.as_ref().filter(|_| exit == Exit::Done) else {
         return Ok(Exit::Diagnostics);
-    }
-    let mut compiled = compile(&input.sources, input.id, &overrides(arguments));
-    if arguments.quiet {
-        compiled.diagnostics.retain(|diagnostic| diagnostic.severity() == Severity::Error);
-    }
-    terminal.diagnostics(&compiled.diagnostics, &input.sources);
-    let Some(scene) = &compiled.scene else { return Ok(Exit::Diagnostics) };
+    };
     let window = window(scene, arguments.crop)?;
     let staged = stage(job, window, context.interrupt)?;
     let Ok(traced) = trace(context, job, scene, window) else { context.interrupt.wait() };
     let facts = facts(scene, &traced);
     context.threads.install(|| write(&traced.picture, &facts, arguments.look.bits, staged))?;
+    let warnings: Vec<Diagnostic> = (!traced.target_met)
+        .then(|| compiled.noise_not_reached(traced.noise, traced.samples))
+        .into_iter()
+        .collect();
+    if !warnings.is_empty() {
+        exit = exit.max(messenger.say(&warnings, &loaded.sources)?);
+    }
     if !arguments.quiet {
-        if !traced.target_met {
-            let warning = compiled.noise_not_reached(traced.noise, traced.samples);
-            terminal.diagnostics(&[warning], &input.sources);
-        }
         compiled.notes.iter().for_each(|note| terminal.line(note));
         terminal.line(&summary(job, scene, &traced, start.elapsed()));
     }
-    Ok(Exit::Done)
+    Ok(exit)
 }
 
 fn facts(scene: &Scene, traced: &Traced) -> Facts {
@@ -277,7 +282,7 @@ pub fn write(picture: &Picture, facts: &Facts, depth: Depth, mut staged: Vec<Sta
 }
 
 /// The outputs as a list.
-fn names(targets: &[Target]) -> String {
+pub fn names(targets: &[Target]) -> String {
     let name = |target: &Target| match is_standard(&target.path) {
         true => "standard output".to_string(),
         false => target.path.display().to_string(),

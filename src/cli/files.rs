@@ -45,7 +45,8 @@ impl Disk {
             let problem = Problem::new(format!("the root `{}` {reason}", shown.display()));
             problem.help("`--root` names the folder below which a scene may read")
         };
-        let root = fs::canonicalize(shown).map_err(|error| cannot(&format!("cannot be used: {}", plain(&error))))?;
+        let root =
+            fs::canonicalize(shown).map_err(|error| cannot(&format!("cannot be used: {}", plain(&error))))?;
         if !root.is_dir() {
             return Err(cannot("is no folder"));
         }

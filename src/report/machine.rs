@@ -55,9 +55,10 @@ struct Mend<'a> {
 /// One diagnostic as a JSON object, without a line end in it.
 pub fn json(diagnostic: &Diagnostic, sources: &Sources) -> String {
     let note = |span: Span, text| Note { place: place(span, sources), text };
-    let mends = diagnostic.fix.iter().map(|fix| Mend {
-        edits: fix.edits.iter().map(|(span, text)| note(*span, text.as_str())).collect(),
-    });
+    let mends = diagnostic
+        .fix
+        .iter()
+        .map(|fix| Mend { edits: fix.edits.iter().map(|(span, text)| note(*span, text.as_str())).collect() });
     let object = Object {
         schema: SCHEMA,
         code: diagnostic.code.as_str(),
@@ -69,7 +70,11 @@ pub fn json(diagnostic: &Diagnostic, sources: &Sources) -> String {
         labels: diagnostic.labels.iter().map(|label| note(label.span, label.text.as_str())).collect(),
         help: diagnostic.help.as_deref(),
         fixes: mends.collect(),
-        uses: diagnostic.uses.iter().map(|span| note(*span, super::first_line(sources.text(*span)))).collect(),
+        uses: diagnostic
+            .uses
+            .iter()
+            .map(|span| note(*span, super::first_line(sources.text(*span))))
+            .collect(),
     };
     serde_json::to_string(&object).unwrap_or_else(|_| unreachable!("texts and numbers are always JSON"))
 }
