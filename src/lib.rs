@@ -50,7 +50,7 @@ pub mod units;
 use diagnostic::{Code, Diagnostic};
 use eval::Origins;
 use inventory::Inventory;
-use lower::Overrides;
+use lower::{Overrides, Places};
 use scene::Scene;
 use source::Sources;
 use span::{SourceId, Span};
@@ -68,8 +68,8 @@ pub struct Compiled {
     pub notes: Vec<String>,
     /// What stands in the picture.
     pub inventory: Inventory,
-    /// Where the source says how noisy the picture may be.
-    noise: Option<Span>,
+    /// Where settings stand that only a finished picture can judge.
+    places: Places,
 }
 
 /// Compiles a source to a scene: parse, check, evaluate, lower. Every stage runs, also after errors, so that
@@ -102,7 +102,7 @@ pub fn compile(sources: &Sources, id: SourceId, overrides: &Overrides) -> Compil
         origins: things.origins,
         diagnostics,
         notes: lowered.notes,
-        noise: lowered.noise,
+        places: lowered.places,
     }
 }
 
@@ -115,17 +115,72 @@ impl Compiled {
             inventory: Inventory::default(),
             diagnostics: vec![diagnostic],
             notes: vec![],
-            noise: None,
+            places: Places::default(),
         }
     }
 
-    /// The warning of a render that ended noisier than the source asks for: `noise`, as a share of white, after
-    /// so many samples a pixel.
-    pub fn noise_not_reached(&self, noise: f64, samples: u32) -> Diagnostic {
-        let place = self.noise.unwrap_or(Span::new(SourceId(0), 0, 0));
-        let message = format!("the noise is still {:.2}% after {samples} samples a pixel", 100.0 * noise);
-        Diagnostic::new(Code::W0701, message, place)
-            .at("not reached")
-            .help("give larger lights, which are found more easily, or allow more noise")
+    /// What a finished picture gives cause to say.
+    pub fn judge(&self, finding: &Finding) -> Diagnostic {
+        let start = Span::new(SourceId(0), 0, 0);
+        match *finding {
+            Finding::Noisy { noise, samples } => {
+                let place = self.places.noise.unwrap_or(start);
+                let message =
+                    format!("the noise is still {:.2}% after {samples} samples a pixel", 100.0 * noise);
+                Diagnostic::new(Code::W0701, message, place)
+                    .at("not reached")
+                    .help("give larger lights, which are found more easily, or allow more noise")
+            }
+            Finding::Cut { share, bounces } => {
+                let message = format!(
+                    "about {:.0}% of the light is lost, since paths end after {bounces} bounces",
+                    100.0 * share
+                );
+                let help =
+                    format!("raise it: `render {{ bounces: {} }}`; or use darker colours", 4 * bounces);
+                Diagnostic::new(Code::W0702, message, self.places.bounces.unwrap_or(start))
+                    .at("too few")
+                    .help(help)
+            }
+            Finding::BurntOut { share, stops, fitting } => {
+                let message =
+                    format!("{:.0}% of the picture is burnt out to white at exposure {stops}", 100.0 * share);
+                let help = match self.places.exposure {
+                    Some(_) => format!("write `exposure: {fitting}`, which would fit, or `auto`"),
+                    None => format!("`--exposure {fitting}` would fit, or `auto`"),
+                };
+                Diagnostic::new(Code::W0703, message, self.places.exposure.unwrap_or(start))
+                    .at("too much")
+                    .help(help)
+            }
+        }
     }
+}
+
+/// Something about a finished picture that is probably not meant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Finding {
+    /// It ended noisier than the source asks for.
+    Noisy {
+        /// As a share of white.
+        noise: f64,
+        /// Samples a pixel.
+        samples: u32,
+    },
+    /// The limit of bounces ended paths that still carried light.
+    Cut {
+        /// About the share of the light that is lost.
+        share: f64,
+        /// The limit.
+        bounces: u32,
+    },
+    /// Much of it is white, and was not before it was exposed.
+    BurntOut {
+        /// The share of its pixels.
+        share: f64,
+        /// The exposure that was given.
+        stops: f64,
+        /// The one that would fit.
+        fitting: f64,
+    },
 }

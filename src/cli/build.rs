@@ -9,6 +9,7 @@ use super::target::{Staged, Target};
 use super::terminal::Terminal;
 use super::{Exit, Problem, scene as scenes};
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use rt_lang::Finding;
 use rt_lang::diagnostic::Diagnostic;
 use rt_lang::lower::Overrides;
 use rt_lang::output::{Depth, Facts, Format, Picture, encode};
@@ -41,6 +42,10 @@ struct Traced {
     target_met: bool,
     /// What it is exposed by, whoever chose it.
     stops: f64,
+    /// What would be chosen.
+    fitting: f64,
+    /// About the share of the light that the limit of bounces loses.
+    cut: f64,
 }
 
 /// Makes the pictures in turn, also those behind one that fails.
@@ -164,10 +169,8 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
     let Ok(traced) = trace(context, job, scene, window) else { context.interrupt.wait() };
     let facts = facts(scene, &traced);
     context.threads.install(|| write(&traced.picture, &facts, arguments.look.bits, staged))?;
-    let warnings: Vec<Diagnostic> = (!traced.target_met)
-        .then(|| compiled.noise_not_reached(traced.noise, traced.samples))
-        .into_iter()
-        .collect();
+    let findings = findings(scene, &traced);
+    let warnings: Vec<Diagnostic> = findings.iter().map(|finding| compiled.judge(finding)).collect();
     if !warnings.is_empty() {
         exit = exit.max(messenger.say(&warnings, &loaded.sources)?);
     }
@@ -176,6 +179,34 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
         terminal.line(&summary(job, scene, &traced, start.elapsed()));
     }
     Ok(exit)
+}
+
+/// The share of the light that may be lost to the limit of bounces before it is worth a warning.
+const MOST_CUT: f64 = 0.05;
+/// Limits below ask for what glows, or for direct light, and mean it.
+const FEW_BOUNCES: u32 = 2;
+/// The share of a picture that may burn out to white, by an exposure that was given.
+const MOST_BURNT_OUT: f64 = 0.25;
+
+/// What is probably not meant in a picture that is done.
+fn findings(scene: &Scene, traced: &Traced) -> Vec<Finding> {
+    let Traced { stops, fitting, samples, noise, .. } = *traced;
+    let mut findings = vec![];
+    if !traced.target_met {
+        findings.push(Finding::Noisy { noise, samples });
+    }
+    let bounces = scene.trace.bounces;
+    if bounces >= FEW_BOUNCES && traced.cut > MOST_CUT {
+        findings.push(Finding::Cut { share: traced.cut, bounces });
+    }
+    if scene.develop.exposure.is_some() {
+        let share = traced.picture.burnt_out(stops, scene.develop.tonemap);
+        // Where nothing darker would be chosen, a white picture is the one that is meant.
+        if share >= MOST_BURNT_OUT && fitting < stops {
+            findings.push(Finding::BurntOut { share, stops, fitting });
+        }
+    }
+    findings
 }
 
 fn facts(scene: &Scene, traced: &Traced) -> Facts {
@@ -265,7 +296,7 @@ fn trace(context: &Context, job: &Job, scene: &Scene, window: Window) -> Result<
         let mean = |x, y| rendered.film.mean(x, y);
         let picture = Picture::gather(scene.trace.size, offset, size, mean);
         let Rendered { samples, noise, target_met, .. } = rendered;
-        Ok(Traced { picture, samples, noise, target_met, stops })
+        Ok(Traced { picture, samples, noise, target_met, stops, fitting: chosen, cut: prepass.cut })
     })
 }
 
