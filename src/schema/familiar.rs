@@ -62,8 +62,6 @@ fn placed(name: &str) -> Option<Familiar> {
 
 fn shape(kind: &str, name: &str) -> Option<Familiar> {
     Some(match (kind, name) {
-            renamed("radius", "`radius` is written out")
-        }
         ("sphere" | "disk" | "cylinder" | "cone" | "paraboloid", "diameter") => {
             rewritten("radius", "`radius` is half of the diameter")
         }
