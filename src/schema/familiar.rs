@@ -85,15 +85,17 @@ fn material(kind: &str, name: &str) -> Option<Familiar> {
         ("plastic", "index" | "eta" | "refractive_index" | "index_of_refraction") => {
             renamed("ior", "`ior` is the refractive index of the coat")
         }
-        ("dielectric", "color" | "colour" | "transmission" | "absorption" | "transmittance") => {
-            rewritten("tint", "`tint` is the colour that white light has after travelling `depth` inside")
-        }
+        (
+            "dielectric",
+            "color" | "colour" | "albedo" | "base_color" | "transmission" | "absorption" | "transmittance",
+        ) => rewritten("tint", "`tint` is the colour that white light has after travelling `depth` inside"),
         ("emitter", "intensity" | "strength" | "brightness" | "emission" | "energy") => {
             rewritten("radiance", "say how much it gives with `power: 5W` in all, or with `radiance: 2W/m2`")
         }
-        (_, "colour" | "albedo" | "reflectance" | "base_color" | "basecolor" | "kd" | "diffuse") => {
-            renamed("color", "`color` is the reflectance")
-        }
+        (
+            "diffuse" | "mirror" | "metal" | "plastic",
+            "colour" | "albedo" | "reflectance" | "base_color" | "kd",
+        ) => renamed("color", "`color` is the reflectance"),
         (
             "metal" | "plastic" | "dielectric",
             "glossiness" | "shininess" | "smoothness" | "fuzz" | "alpha",
