@@ -36,6 +36,9 @@ pub struct Style {
 /// line with their count. Empty where there are none.
 pub fn all(diagnostics: &[Diagnostic], sources: &Sources, style: Style) -> String {
     let mut shown: Vec<&Diagnostic> = diagnostics.iter().collect();
+    shown.sort_by_key(|diagnostic| place(diagnostic));
+    let repeated = drop_repeated(&mut shown);
+    let worth = shown.len();
     shown.sort_by_key(|diagnostic| (diagnostic.severity(), place(diagnostic)));
     shown.truncate(MOST_SHOWN);
     shown.sort_by_key(|diagnostic| place(diagnostic));
@@ -44,14 +47,42 @@ pub fn all(diagnostics: &[Diagnostic], sources: &Sources, style: Style) -> Strin
         text.push_str(&human(diagnostic, sources, style));
         text.push('\n');
     }
-    if shown.len() < diagnostics.len() {
-        text.push_str(&format!("… and {} more\n", diagnostics.len() - shown.len()));
+    for (diagnostic, count) in repeated {
+        let at = at(diagnostic.primary.span, sources);
+        text.push_str(&format!("… {count} more of {} at {at}\n", diagnostic.code.as_str()));
+    }
+    if shown.len() < worth {
+        text.push_str(&format!("… and {} more\n", worth - shown.len()));
     }
     if let Some(first) = shown.first() {
         let name = printable(&sources.get(first.primary.span.source).name);
         text.push_str(&format!("{} in {name}\n", count(diagnostics)));
     }
     text
+}
+
+/// How often one code is shown at one place: a slip in a loop has another value each turn.
+const MOST_ALIKE: usize = 3;
+
+/// Leaves the first few of those that share code and place, and gives one of each of the others with their count.
+/// They come in the order of their places.
+fn drop_repeated<'d>(shown: &mut Vec<&'d Diagnostic>) -> Vec<(&'d Diagnostic, usize)> {
+    let mut dropped: Vec<(&Diagnostic, usize)> = vec![];
+    let mut last = None;
+    let mut alike = 0;
+    shown.retain(|diagnostic| {
+        let here = Some(place(diagnostic));
+        alike = if here == last { alike + 1 } else { 1 };
+        last = here;
+        if alike > MOST_ALIKE {
+            match dropped.last_mut() {
+                Some((_, count)) if alike > MOST_ALIKE + 1 => *count += 1,
+                _ => dropped.push((diagnostic, 1)),
+            }
+        }
+        alike <= MOST_ALIKE
+    });
+    dropped
 }
 
 /// One diagnostic: code and message, the place with its labels, the help, and the uses that led there.

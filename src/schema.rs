@@ -3,6 +3,7 @@
 //! Checking, lowering, messages and the reference page all read it, and no field is named anywhere else: the
 //! `kinds!` table also yields a module a kind (`sphere::RADIUS`, …) with a typed key a field.
 
+pub mod familiar;
 pub mod textures;
 mod types;
 

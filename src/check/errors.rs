@@ -7,7 +7,7 @@ pub(super) use types::*;
 
 use super::types::{Type, describe_wanted, list};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::schema::{self, Category, Field, FieldType, KindId, Preset};
+use crate::schema::{self, Category, Field, FieldType, KindId, Preset, familiar};
 use crate::span::Span;
 use crate::syntax::ast::{Keyword, Name};
 use crate::units;
@@ -59,6 +59,12 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
             diagnostic.help("micrometres are written `um`").fix(name.span, "um")
         }
         None if what == "unit" => diagnostic.help(format!("the units are {}", quoted(candidates))),
+        None if what == "kind"
+            && let Some(here) = familiar::kind(&name.text)
+                .filter(|here| here.name.is_none_or(|name| candidates.contains(&name))) =>
+        {
+            with_familiar(diagnostic, here, name.span, candidates)
+        }
         None if what == "kind" => diagnostic.help(format!("the kinds known here are {}", quoted(candidates))),
         None if what == "name" => diagnostic.help(format!("declare it: `let {} = …`", name.text)),
         None => diagnostic,
@@ -212,6 +218,7 @@ pub(super) fn named_part(kind: &Name, name: &Name, outer: KindId) -> Diagnostic 
     Diagnostic::new(Code::E0301, message, name.span)
         .at("a name here")
         .help(format!("write `{} {{ … }}`", kind.text))
+        .fix(name.span, "")
 }
 
 pub(super) fn unknown_field(kind: KindId, name: &Name, free: &[&str], all: &[&str]) -> Diagnostic {
@@ -221,12 +228,21 @@ pub(super) fn unknown_field(kind: KindId, name: &Name, free: &[&str], all: &[&st
         name.span,
     )
     .at("unknown field");
-    match closest(&name.text, free) {
-        Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
-        None if kind.get().category == Category::Shape && matches!(&*name.text, "color" | "colour") => {
-            diagnostic.help("a colour belongs to a material: `material: diffuse { color: #d94f30 }`")
-        }
-        None => diagnostic.help(format!("its fields are {}", quoted(all))),
+    let here =
+        familiar::field(kind, &name.text).filter(|here| here.name.is_none_or(|name| all.contains(&name)));
+    match (here, closest(&name.text, free)) {
+        (Some(here), _) => with_familiar(diagnostic, here, name.span, free),
+        (None, Some(guess)) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
+        (None, None) => diagnostic.help(format!("its fields are {}", quoted(all))),
+    }
+}
+
+/// Says what a name from elsewhere is called here; the name is free to be taken where it is among `free`.
+fn with_familiar(diagnostic: Diagnostic, here: familiar::Familiar, span: Span, free: &[&str]) -> Diagnostic {
+    let diagnostic = diagnostic.help(here.hint);
+    match here.name {
+        Some(name) if here.same_value && free.contains(&name) => diagnostic.fix(span, name),
+        _ => diagnostic,
     }
 }
 

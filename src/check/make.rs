@@ -3,7 +3,7 @@
 use super::types::{Element, FieldSet, Type};
 use super::{Base, Checker, Expr, ExprKind, Make, errors, scope::Item};
 use crate::diagnostic::Diagnostic;
-use crate::schema::{Category, Field, FieldType, KindId, Preset, Rule};
+use crate::schema::{Category, Field, FieldType, KindId, Preset, Rule, familiar};
 use crate::span::Span;
 use crate::syntax::ast::{self, Entry, ExprKind as Tree, Name, StatementKind};
 use crate::units;
@@ -247,7 +247,10 @@ fn free_fields(kind: KindId, places: &[Option<Span>]) -> Vec<&'static str> {
 
 /// The field that an unknown name probably means.
 fn probable_field(kind: KindId, name: &Name, places: &[Option<Span>]) -> Option<usize> {
-    errors::closest(&name.text, &free_fields(kind, places)).and_then(|guess| kind.field_index(guess))
+    let free = free_fields(kind, places);
+    let here =
+        familiar::field(kind, &name.text).and_then(|here| here.name).filter(|name| free.contains(name));
+    here.or_else(|| errors::closest(&name.text, &free)).and_then(|guess| kind.field_index(guess))
 }
 
 /// The statements of a body by what they are.

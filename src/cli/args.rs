@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand};
 use rt_lang::output::Depth;
 use rt_lang::schema::Tonemap;
 use std::path::PathBuf;
-pub use tools::{Check, Completions, Explain, Info, Init, Man, Messages, Reading, Shell, Show};
+pub use tools::{Check, Completions, Explain, Info, Init, Man, Messages, Reading, Show};
 pub use values::Denied;
 use values::{crop, depths, exposure, samples, seed, size, stops, threads, tonemaps};
 

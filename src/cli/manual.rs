@@ -1,6 +1,6 @@
 //! `rtc completions` and `rtc man`: both are made from the flags as they are declared.
 
-use super::args::{Arguments, Completions, Man, Shell};
+use super::args::{Arguments, Completions, Man};
 use super::{Exit, Problem, plain, target};
 use clap::CommandFactory;
 use std::fs;
@@ -8,15 +8,8 @@ use std::path::Path;
 
 /// Prints the completion script of a shell.
 pub fn completions(arguments: &Completions) -> Result<Exit, Problem> {
-    let shell = match arguments.shell {
-        Shell::Bash => clap_complete::Shell::Bash,
-        Shell::Zsh => clap_complete::Shell::Zsh,
-        Shell::Fish => clap_complete::Shell::Fish,
-        Shell::PowerShell => clap_complete::Shell::PowerShell,
-        Shell::Elvish => clap_complete::Shell::Elvish,
-    };
     let mut script = vec![];
-    clap_complete::generate(shell, &mut Arguments::command(), "rtc", &mut script);
+    clap_complete::generate(arguments.shell, &mut Arguments::command(), "rtc", &mut script);
     target::print(&script)?;
     Ok(Exit::Done)
 }

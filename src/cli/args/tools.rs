@@ -2,6 +2,7 @@
 
 use super::values::{Denied, denied};
 use clap::{Args, ValueEnum};
+use clap_complete::Shell;
 use std::path::PathBuf;
 
 /// What a scene may read.
@@ -131,18 +132,6 @@ pub struct Completions {
     /// The shell.
     #[arg(value_name = "SHELL", value_enum)]
     pub shell: Shell,
-}
-
-/// Value of `rtc completions`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-#[allow(missing_docs)]
-pub enum Shell {
-    Bash,
-    Zsh,
-    Fish,
-    #[value(name = "powershell")]
-    PowerShell,
-    Elvish,
 }
 
 pub const MAN_EXAMPLES: &str = "\
