@@ -9,6 +9,8 @@ mod lights;
 mod numbers;
 mod reference;
 mod shapes;
+mod skies;
+mod textures;
 
 use super::*;
 use crate::color::luminance;
