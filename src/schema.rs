@@ -281,10 +281,57 @@ kinds! {
         AXES "axes": Point = Required, POSITIVE;
         /// Two bowls, or one tower.
         SHEETS "sheets": Int = Value("2"), within(1.0, 2.0);
-        /// Keeps |y| ≤ height/2 and closes it with flat caps.
+        /// Keeps |y| ≤ height/2 and closes it with flat caps: its middle is at the origin.
         HEIGHT "height": Length = Absent("without end"), POSITIVE;
         /// Leaves the caps away.
         OPEN "open": Bool = Value("false"), ANY;
+    }
+
+    /// A bowl about the y axis with its vertex at the origin, opening upwards: y = height · (x² + z²) / radius².
+    /// It stands on its origin, and ends at y = height.
+    Shape paraboloid "paraboloid" {
+        /// Of the rim, at y = height.
+        RADIUS "radius": Length = Required, POSITIVE;
+        /// From the vertex to the rim.
+        HEIGHT "height": Length = Required, POSITIVE;
+        /// Leaves the flat cap over the rim away.
+        OPEN "open": Bool = Value("false"), ANY;
+    }
+
+    /// A cone about the y axis. It stands on its origin: the base is at y = 0, the apex at y = height.
+    Shape cone "cone" {
+        /// Of the base.
+        RADIUS "radius": Length = Required, POSITIVE;
+        /// From the base to the apex.
+        HEIGHT "height": Length = Required, POSITIVE;
+        /// The radius at y = height, of a cone that is cut off before its apex; it may exceed `radius`.
+        TOP "top": Length = Value("0"), NOT_NEGATIVE;
+        /// Leaves the flat caps away.
+        OPEN "open": Bool = Value("false"), ANY;
+    }
+
+    /// A cylinder about the y axis. It stands on its origin, from y = 0 to y = height.
+    Shape cylinder "cylinder" {
+        /// From the axis to the side.
+        RADIUS "radius": Length = Required, POSITIVE;
+        /// From the lower end to the upper.
+        HEIGHT "height": Length = Required, POSITIVE;
+        /// Leaves the flat caps away: a pipe with a wall of no thickness.
+        OPEN "open": Bool = Value("false"), ANY;
+    }
+
+    /// A flat disc about its origin. It encloses nothing; as an emitter it glows on both sides.
+    Shape disk "disk" {
+        /// From the centre to the rim.
+        RADIUS "radius": Length = Required, POSITIVE;
+        /// Perpendicular to it. Need not be of length 1.
+        NORMAL "normal": Vector = Value("(0, 1, 0)"), ANY;
+    }
+
+    /// A box with its middle at the origin and its edges along the axes.
+    Shape cuboid "box" {
+        /// Edge lengths along x, y and z.
+        SIZE "size": Point = Required, POSITIVE;
     }
 
     /// An endless plane through its origin. The solid half-space lies behind the normal.

@@ -5,15 +5,16 @@
 //! drawn, so that the two ways can share the work (multiple importance sampling).
 
 mod panorama;
+mod surface;
 
 use super::shape::{Face, Place, SurfacePoint};
 use super::warp;
 use crate::color::{Rgb, luminance};
 use crate::math::{DVec3, PI, basis};
-use crate::scene::shape::Quadric;
 use crate::scene::{Light, Material, Paint, PrimitiveId, Scene, Shape};
 use panorama::Sky;
 use std::collections::BTreeMap;
+use surface::Glowing;
 
 /// What gives light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -99,27 +100,7 @@ enum Kind {
         center: DVec3,
         radius: f64,
     },
-    Quadric(Box<GlowingQuadric>),
-}
-
-struct GlowingQuadric {
-    id: PrimitiveId,
-    quadric: Quadric,
-    area: f64,
-    /// Middle of its box, and half the diagonal squared.
-    center: DVec3,
-    extent_squared: f64,
-    parts: Vec<Part>,
-}
-
-/// A stretch of the side, or a cap.
-struct Part {
-    face: Face,
-    /// From and to in object space's y; for a cap twice the same.
-    stretch: [f64; 2],
-    /// Of the whole area.
-    share: f64,
-    area: f64,
+    Surface(Box<Glowing>),
 }
 
 /// What the uniform share in choosing a light is. It bounds the noise where the estimates are far off.
@@ -243,8 +224,7 @@ impl Lamp {
     fn from_surface(id: PrimitiveId, shape: &Shape, radiance: Rgb, mean: Rgb, peak: Rgb) -> Option<Lamp> {
         let kind = match shape {
             Shape::Sphere { center, radius } => Kind::Sphere { id, center: *center, radius: *radius },
-            Shape::Plane { .. } => return None,
-            Shape::Quadric(quadric) => Kind::Quadric(Box::new(GlowingQuadric::new(id, quadric, shape)?)),
+            shape => Kind::Surface(Box::new(Glowing::new(id, shape)?)),
         };
         let (source, strength, peak) = (Source::Primitive(id), luminance(mean), peak.max_element());
         Some(Lamp { source, radiance, strength, peak, kind })
@@ -280,10 +260,7 @@ impl Lamp {
                 let bound = cosine_bound(receiver, to / squared.sqrt(), sine_squared.sqrt());
                 strength * PI * sine_squared * bound
             }
-            Kind::Quadric(glowing) => {
-                let squared = glowing.center.distance_squared(receiver.p);
-                strength * glowing.area / squared.max(glowing.extent_squared)
-            }
+            Kind::Surface(glowing) => strength * glowing.estimate(receiver.p),
         };
         // Finite even for a light in the very point.
         estimate.min(1e200)
@@ -358,7 +335,7 @@ impl Lamp {
                     target: Some(target),
                 })
             }
-            Kind::Quadric(glowing) => glowing.sample(receiver, part, u, self.radiance),
+            Kind::Surface(glowing) => glowing.sample(receiver, part, u, self.radiance),
         }
     }
 
@@ -374,7 +351,7 @@ impl Lamp {
                 let sine = radius / center.distance(receiver.p);
                 if sine < 1.0 { warp::cone_pdf(cone_height(sine)) } else { 0.0 }
             }
-            Kind::Quadric(glowing) => {
+            Kind::Surface(glowing) => {
                 point.map_or(0.0, |(point, face)| glowing.pdf(receiver.p, wi, point, face))
             }
         }
@@ -397,102 +374,6 @@ impl Lamp {
             }
             _ => false,
         }
-    }
-}
-
-impl GlowingQuadric {
-    fn new(id: PrimitiveId, quadric: &Quadric, shape: &Shape) -> Option<GlowingQuadric> {
-        let bounds = shape.bounds()?;
-        let [low_cap, high_cap] = quadric.cap_areas();
-        let [below, above] = quadric.stretches();
-        let mut parts: Vec<Part> = [
-            (Face::Side, below, quadric.side_area(below[0], below[1])),
-            (Face::Side, above, quadric.side_area(above[0], above[1])),
-            (Face::Low, [quadric.low; 2], low_cap),
-            (Face::High, [quadric.high; 2], high_cap),
-        ]
-        .into_iter()
-        .filter(|(_, _, area)| *area > 0.0)
-        .map(|(face, stretch, area)| Part { face, stretch, share: 0.0, area })
-        .collect();
-        let area: f64 = parts.iter().map(|part| part.area).sum();
-        parts.iter_mut().for_each(|part| part.share = part.area / area);
-        let extent_squared = 0.25 * bounds.size().length_squared();
-        let sampled = area > 0.0 && area < f64::INFINITY;
-        sampled.then(|| GlowingQuadric {
-            id,
-            quadric: *quadric,
-            area,
-            center: bounds.center(),
-            extent_squared,
-            parts,
-        })
-    }
-
-    /// A point by area: the part by its share, within the side uniform in y and angle.
-    fn sample(&self, receiver: &Receiver, part: f64, u: [f64; 2], radiance: Rgb) -> Option<LightSample> {
-        let mut rest = part;
-        let part = self.parts.iter().find(|part| {
-            let here = rest < part.share;
-            rest -= part.share;
-            here
-        });
-        let part = part.or(self.parts.last())?;
-        let object = match part.face {
-            Face::Side => {
-                let [low, high] = part.stretch;
-                self.quadric.side_point(low + u[0] * (high - low), 2.0 * PI * u[1])
-            }
-            Face::Low | Face::High => {
-                let y = part.stretch[0];
-                let p = self.quadric.form.radius_squared(y).sqrt() * warp::disc(u);
-                DVec3::new(p.x, y, p.y)
-            }
-        };
-        let p = self.quadric.world_from_object.transform_point3(object);
-        let gradient = match part.face {
-            Face::Side => self.quadric.form.half_gradient(object),
-            Face::Low => DVec3::NEG_Y,
-            Face::High => DVec3::Y,
-        };
-        let n = (self.quadric.object_from_world.matrix3.transpose() * gradient).normalize();
-        let to = p - receiver.p;
-        let distance = to.length();
-        let wi = to / distance;
-        let facing = -n.dot(wi);
-        let glows = if self.quadric.is_closed() { facing > 0.0 } else { facing != 0.0 };
-        let pdf = self.pdf(receiver.p, wi, &SurfacePoint { p, n }, part.face);
-        let place = Place { primitive: self.id, face: part.face };
-        (glows && pdf > 0.0 && pdf < f64::INFINITY).then_some(LightSample {
-            wi,
-            distance,
-            radiance,
-            pdf,
-            delta: false,
-            target: Some(Target { point: SurfacePoint { p, n }, place, hides_itself: true }),
-        })
-    }
-
-    fn pdf(&self, from: DVec3, wi: DVec3, point: &SurfacePoint, face: Face) -> f64 {
-        let object = self.quadric.object_from_world.transform_point3(point.p);
-        let part = self.parts.iter().find(|part| {
-            part.face == face
-                && (face != Face::Side || self.parts_side(object.y) == self.parts_side(part.stretch[0]))
-        });
-        let Some(part) = part else { return 0.0 };
-        let by_area = match face {
-            Face::Side => {
-                let [low, high] = part.stretch;
-                part.share / ((high - low) * 2.0 * PI * self.quadric.side_density(object))
-            }
-            Face::Low | Face::High => 1.0 / self.area,
-        };
-        by_area * point.p.distance_squared(from) / point.n.dot(wi).abs()
-    }
-
-    /// Which of the sheets a height belongs to, where there are two.
-    fn parts_side(&self, y: f64) -> bool {
-        self.quadric.form == crate::scene::shape::Form::TwoSheet && y < 0.0
     }
 }
 

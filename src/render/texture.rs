@@ -60,14 +60,13 @@ impl<'s> Spot<'s> {
     fn place(&self, size: DVec2) -> Place {
         match (&self.primitive.shape, self.face) {
             (Shape::Sphere { .. }, _) => globe(self.o),
-            (Shape::Plane { .. }, _) | (Shape::Quadric(_), Face::Low | Face::High) => {
-                flat(self.o, self.n, size)
-            }
+            (Shape::Plane { .. } | Shape::Disk(_) | Shape::Box(_), _)
+            | (Shape::Quadric(_), Face::Low | Face::High | Face::Wall(_)) => flat(self.o, self.n, size),
             (Shape::Quadric(quadric), Face::Side) => {
                 let canonical = quadric.object_from_world.transform_point3(self.point.p);
                 match quadric.form {
                     Form::Ellipsoid => globe(canonical),
-                    Form::OneSheet | Form::TwoSheet => around(quadric, canonical, self.o, size),
+                    _ => around(quadric, canonical, self.o, size),
                 }
             }
         }

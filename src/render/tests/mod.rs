@@ -10,12 +10,13 @@ mod numbers;
 mod reference;
 mod shapes;
 mod skies;
+mod solids;
 mod textures;
 
 use super::*;
 use crate::color::luminance;
 use crate::math::{DMat3, DVec2, DVec3, PI, pow};
-use crate::scene::shape::{Form, Quadric};
+use crate::scene::shape::{Form, Placed, Quadric};
 use crate::scene::{
     Camera, Develop, Filter, Light, MaterialId, OriginId, Primitive, PrimitiveId, Shape, Trace,
 };
@@ -91,9 +92,14 @@ fn floor() -> Shape {
     Shape::Plane { point: DVec3::ZERO, normal: DVec3::Y }
 }
 
-fn quadric(form: Form, matrix: DMat3, at: DVec3, [low, high]: [f64; 2], capped: bool) -> Quadric {
+fn quadric(form: Form, matrix: DMat3, at: DVec3, [low, high]: [f64; 2], capped: bool) -> Box<Quadric> {
     let map = crate::math::DAffine3::from_mat3_translation(matrix, at);
-    Quadric { form, world_from_object: map, object_from_world: map.inverse(), low, high, capped }
+    Box::new(Quadric { form, world_from_object: map, object_from_world: map.inverse(), low, high, capped })
+}
+
+fn placed(matrix: DMat3, at: DVec3) -> Box<Placed> {
+    let map = crate::math::DAffine3::from_mat3_translation(matrix, at);
+    Box::new(Placed { world_from_object: map, object_from_world: map.inverse() })
 }
 
 fn white() -> Material {
