@@ -179,3 +179,20 @@ fn the_hash_of_a_scene_sees_what_it_is_painted_with() {
     again.images[0] = four();
     assert_eq!(scene.hash(), again.hash());
 }
+
+#[test]
+fn what_is_painted_far_out_or_tiny_stays_a_colour() {
+    for texture in [
+        Texture::Checker { a: WHITE, b: BLACK, size: 1e-300 },
+        Texture::Stripes { a: WHITE, b: BLACK, width: 1e-300, along: DVec3::X },
+        Texture::Noise { a: WHITE, b: BLACK, size: 1e-300, octaves: 3, seed: 0 },
+        Texture::Image { image: ImageId(0), size: DVec2::splat(1e-300) },
+    ] {
+        for scale in [1e-150, 1.0, 1e150] {
+            let mut scene = painted(floor(), texture, DAffine3::from_scale(DVec3::splat(scale)));
+            scene.images.push(four());
+            let color = shown(&scene, Face::Side, v(1e200, 0.0, -3.0), DVec3::Y);
+            assert!(color.min_element() >= 0.0 && color.max_element() <= 1.0, "{texture:?}: {color}");
+        }
+    }
+}
