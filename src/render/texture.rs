@@ -82,9 +82,12 @@ fn globe(o: DVec3) -> Place {
 /// Once around the axis, as on a globe. Between its ends a picture covers the whole height; without an end copies
 /// follow each other, one standing about the origin.
 fn around(quadric: &Quadric, canonical: DVec3, o: DVec3, size: DVec2) -> Place {
-    let height = quadric.high - quadric.low;
-    let repeats_up = height == f64::INFINITY;
-    let v = if repeats_up { 0.5 + o.y / size.y } else { (canonical.y - quadric.low) / height };
+    let stretches = quadric.stretches();
+    let covered = || stretches.iter().filter(|[low, high]| low < high);
+    let low = covered().map(|[low, _]| *low).fold(f64::INFINITY, f64::min);
+    let high = covered().map(|[_, high]| *high).fold(f64::NEG_INFINITY, f64::max);
+    let repeats_up = high - low == f64::INFINITY;
+    let v = if repeats_up { 0.5 + o.y / size.y } else { (canonical.y - low) / (high - low) };
     Place { uv: DVec2::new(longitude(canonical), v), repeats_up }
 }
 

@@ -114,7 +114,16 @@ fn a_picture_lies_around_spheres_and_towers() {
     let tower =
         quadric(Form::OneSheet, DMat3::from_diagonal(v(1.0, 2.0, 1.0)), DVec3::ZERO, [-1.0, 1.0], false);
     let tower = pictured(Shape::Quadric(tower));
-    for (scene, height) in [(ball, 1.0), (tower, 1.0)] {
+    // From its vertex, which no cut makes, to its rim.
+    let bowl = quadric(
+        Form::Paraboloid,
+        DMat3::from_diagonal(v(1.0, 2.0, 1.0)),
+        -DVec3::Y,
+        [-f64::INFINITY, 1.0],
+        true,
+    );
+    let bowl = pictured(Shape::Quadric(bowl));
+    for (scene, height) in [(ball, 1.0), (tower, 1.0), (bowl, 0.9)] {
         let at = |longitude: f64, y: f64| {
             let p = v(sin(longitude), y * height, cos(longitude));
             shown(&scene, Face::Side, p, p.normalize())
