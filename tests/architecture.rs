@@ -23,7 +23,10 @@ const EDGES: &[(&str, &[&str])] = &[
     ("lower", &["span", "diagnostic", "files", "math", "color", "schema", "eval", "asset", "scene"]),
     ("render", &["math", "color", "develop", "scene"]),
     ("output", &["math", "color", "develop", "scene"]),
-    ("report", &["span", "source", "diagnostic"]),
+    ("explain", &["diagnostic"]),
+    ("inventory", &["schema", "eval", "scene"]),
+    ("mend", &["span", "diagnostic"]),
+    ("report", &["span", "source", "diagnostic", "explain"]),
 ];
 
 #[test]

@@ -51,8 +51,19 @@ pub struct Lowered {
     pub notes: Vec<String>,
     /// What is wrong.
     pub diagnostics: Vec<Diagnostic>,
-    /// Where the noise target stands.
+    /// Where settings stand that only a finished picture can judge.
+    pub places: Places,
+}
+
+/// Where settings stand that only a finished picture can judge; none where the source does not give them.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Places {
+    /// The noise target.
     pub noise: Option<Span>,
+    /// The limit of bounces.
+    pub bounces: Option<Span>,
+    /// The exposure that is in force.
+    pub exposure: Option<Span>,
 }
 
 /// Lowers the things of a picture. Things with errors, which were reported, are left out.
@@ -331,7 +342,8 @@ impl<'a> Lowering<'a> {
         let made = blocks.render.map(|thing| thing.made.clone()).unwrap_or_else(|| plain(render::KIND));
         let samples = made.given(render::SAMPLES).map(|(samples, _)| samples as u32);
         let noise = made.given(render::NOISE);
-        self.out.noise = noise.map(|(_, span)| span);
+        self.out.places.noise = noise.map(|(_, span)| span);
+        self.out.places.bounces = made.given(render::BOUNCES).map(|(_, span)| span);
         let target = match (self.overrides.samples.or(samples), noise) {
             (Some(samples), _) => Target::Samples(samples),
             (None, Some((noise, _))) => Target::Noise(noise),

@@ -82,6 +82,17 @@ pub struct Rendered {
     pub target_met: bool,
 }
 
+/// About how many bytes it takes to trace the whole of a scene: its surfaces, the hierarchy over them while it is
+/// built, the film, and the picture that is made of it.
+pub fn memory(scene: &Scene) -> u64 {
+    let surfaces = scene.primitives.len() as u64;
+    let surface = (size_of::<crate::scene::Primitive>() + accel::BYTES_A_SURFACE) as u64;
+    // A pass over the picture is held beside the sums that it is added to.
+    let pixel = (2 * size_of::<Pixel>() + size_of::<Rgb>()) as u64;
+    let [width, height] = scene.trace.size.map(u64::from);
+    surfaces * surface + width * height * pixel
+}
+
 /// How the film will be shown, which is what a noise target speaks of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shown {
