@@ -107,7 +107,9 @@ pub(super) fn no_direction(field: &Field, span: Span) -> Diagnostic {
 
 pub(super) fn too_many_textures(span: Span) -> Diagnostic {
     let message = format!("more than {MAX_TEXTURE_LEVELS} textures within each other");
-    Diagnostic::new(Code::E0406, message, span).at("one too many")
+    Diagnostic::new(Code::E0406, message, span)
+        .at("one too many")
+        .help("draw the pattern into a picture and use `image`")
 }
 
 fn dimension(ty: FieldType) -> Dim {

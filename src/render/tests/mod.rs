@@ -9,7 +9,9 @@ mod lights;
 mod numbers;
 mod reference;
 mod shapes;
+mod skies;
 mod solids;
+mod textures;
 
 use super::*;
 use crate::color::luminance;
