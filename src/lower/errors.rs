@@ -148,6 +148,19 @@ pub(super) fn focus_behind(span: Span) -> Diagnostic {
         .help("focus on what the camera looks at")
 }
 
+pub(super) fn lens_of_parallel(lens: Span, width: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0304, "an orthographic camera has no lens", lens)
+        .at("a lens")
+        .label(width, "which makes the camera orthographic")
+        .help("give `fov` in place of `width`, or leave the lens out")
+}
+
+pub(super) fn aimed_at_itself(aim: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0404, "the spot is aimed at the point where it stands", aim)
+        .at("no direction")
+        .help("move the light away from what it shines at")
+}
+
 pub(super) fn fov_and_focal(fov: Span, focal: Span) -> Diagnostic {
     Diagnostic::new(Code::E0304, "`fov` and `focal` both say how wide the view is", fov)
         .at("one of the two")

@@ -8,8 +8,8 @@ mod shape;
 
 use crate::color::Rgb;
 use crate::diagnostic::Diagnostic;
-use crate::eval::{Thing, ThingId, Things};
-use crate::math::DVec3;
+use crate::eval::{Aim, Thing, ThingId, Things};
+use crate::math::{DVec3, PI, sin};
 use crate::scene::shape::Bounds;
 use crate::scene::{Develop, Light, Material, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace};
 use crate::schema::{Category, DEFAULT_SAMPLES, light, render, sky, sun};
@@ -128,6 +128,7 @@ impl<'a> Lowering<'a> {
 
     fn surfaces_and_lights(&mut self) {
         let mut sky_place = None;
+        let mut spots = vec![];
         for (index, thing) in self.things.things.iter().enumerate() {
             let sound =
                 thing.made.is_sound() && thing.material.as_ref().is_none_or(|given| given.value.is_sound());
@@ -146,6 +147,7 @@ impl<'a> Lowering<'a> {
                 self.surface(index, thing);
             } else if kind == light::KIND {
                 self.lamp(index, thing);
+                spots.extend(thing.made.given(light::AIM).map(|(aim, span)| (index, thing, aim, span)));
             } else if kind == sun::KIND {
                 self.sun(thing);
             } else if kind == sky::KIND {
@@ -154,6 +156,35 @@ impl<'a> Lowering<'a> {
                 self.add_light(thing, Light::Sky { radiance: color * radiance });
             }
         }
+        for (index, thing, aim, span) in spots {
+            self.spot(index, thing, aim, span);
+        }
+    }
+
+    /// A lamp that shines into a cone, in the place that was found for it.
+    fn spot(&mut self, index: usize, thing: &Thing, aim: Aim, span: Span) {
+        let Extent::Lamp(Bounds { min: position, .. }) = self.extents[index] else { return };
+        let target = match aim {
+            Aim::Point(point) => Some(thing.world_from_object.transform_point3(point)),
+            Aim::Thing(_) => self.aim(aim, span),
+        };
+        let Some(target) = target else { return };
+        let Some(direction) = shape::unit(target - position) else {
+            return self.report(self.used_at(thing, errors::aimed_at_itself(span)));
+        };
+        let made = &thing.made;
+        let Some((cone, _)) = made.given(light::CONE) else { return };
+        let outer = 0.5 * cone;
+        let inner = (1.0 - self.things.read(made, light::SOFT)) * outer;
+        let power = self.things.read(made, light::COLOR) * self.things.read(made, light::POWER);
+        // Over the cosine the smooth step has the mean ½, so the flux is 2π(1 − (cos inner + cos outer) / 2) times
+        // the intensity. The half angles keep it exact for narrow cones.
+        let height = |angle: f64| {
+            let sine = sin(0.5 * angle);
+            2.0 * sine * sine
+        };
+        let intensity = power / (PI * (height(inner) + height(outer)));
+        self.add_light(thing, Light::Spot { position, direction, intensity, inner, outer });
     }
 
     fn surface(&mut self, index: usize, thing: &Thing) {
@@ -192,8 +223,12 @@ impl<'a> Lowering<'a> {
             return self.report(self.used_at(thing, errors::not_finite_place(made.span)));
         }
         self.extents[index] = Extent::Lamp(Bounds { min: position, max: position });
+        if made.given(light::AIM).is_some() {
+            // What it is aimed at may be found only later.
+            return;
+        }
         if radius == 0.0 {
-            let intensity = power / (4.0 * crate::math::PI);
+            let intensity = power / (4.0 * PI);
             return self.add_light(thing, Light::Point { position, intensity });
         }
         let placement = thing.world_from_object * crate::math::DAffine3::from_translation(at);
@@ -202,7 +237,7 @@ impl<'a> Lowering<'a> {
                 if let Some(bounds) = shape.bounds() {
                     self.extents[index] = Extent::Lamp(bounds);
                 }
-                let radiance = power / (crate::math::PI * shape.area());
+                let radiance = power / (PI * shape.area());
                 if !radiance.is_finite() {
                     return self.report(self.used_at(thing, errors::glows_beyond(made.span)));
                 }
@@ -226,7 +261,7 @@ impl<'a> Lowering<'a> {
 
     fn add_light(&mut self, thing: &Thing, light: Light) {
         let finite = match light {
-            Light::Point { intensity, .. } => intensity.is_finite(),
+            Light::Point { intensity, .. } | Light::Spot { intensity, .. } => intensity.is_finite(),
             Light::Sun { irradiance, .. } => irradiance.is_finite(),
             Light::Sky { radiance } => radiance.is_finite(),
         };
@@ -333,6 +368,7 @@ impl<'a> Lowering<'a> {
             indirect: self.things.read(&made, render::INDIRECT),
             seed: self.overrides.seed.unwrap_or(self.things.read(&made, render::SEED) as u64),
             filter: self.things.read(&made, render::FILTER),
+            background: self.things.read(&made, render::BACKGROUND),
         };
         let tonemap = self.overrides.tonemap.unwrap_or_else(|| self.things.read(&made, render::TONEMAP));
         (trace, tonemap)

@@ -15,7 +15,7 @@ use super::sampler::{Pair, Sampler};
 use super::shape::{Place, Ray, SurfacePoint, surface_point};
 use crate::color::Rgb;
 use crate::math::{DVec3, basis};
-use crate::scene::Material;
+use crate::scene::{Background, Material};
 
 /// Vertices before roulette may end a path. It was measured to cost more than it saves at depth 8.
 const FIRST_ROULETTE: u32 = 16;
@@ -55,14 +55,23 @@ struct Last {
     pdf: f64,
 }
 
-/// The radiance along a camera ray. `inside` is scratch space.
-pub(super) fn radiance<O: Observer>(
+/// What a camera path brings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Arrived {
+    /// Radiance along the camera ray.
+    pub radiance: Rgb,
+    /// Whether the ray met nothing in front of a transparent background.
+    pub open: bool,
+}
+
+/// What arrives along a camera ray. `inside` is scratch space.
+pub(super) fn trace<O: Observer>(
     tracer: &Tracer,
     ray: Ray,
     sampler: &Sampler,
     inside: &mut Scratch,
     observer: &mut O,
-) -> Rgb {
+) -> Arrived {
     let Scratch { path: inside, shadow } = inside;
     let trace = &tracer.scene.trace;
     tracer.dielectrics.enter_at(&ray, inside);
@@ -84,6 +93,11 @@ pub(super) fn radiance<O: Observer>(
 
         // Account for the sky and the suns if the ray leaves the scene.
         let Some(hit) = hit else {
+            // What dims or bends the ray on its way is seen, and so is the background through it.
+            if trace.background == Background::Transparent && path.bounces == 0 && path.throughput == Rgb::ONE
+            {
+                return Arrived { radiance: Rgb::ZERO, open: true };
+            }
             for (source, radiance) in tracer.lights.beyond(path.ray.direction) {
                 path.find(tracer, source, radiance, None);
             }
@@ -158,7 +172,7 @@ pub(super) fn radiance<O: Observer>(
             path.throughput /= survival;
         }
     }
-    path.radiance
+    Arrived { radiance: path.radiance, open: false }
 }
 
 /// Memory that paths use one after the other.

@@ -45,7 +45,7 @@ use camera::Eye;
 pub use control::{Cancelled, Control, Progress};
 pub use film::{Film, Window};
 use film::{MOST_SAMPLES, Pixel};
-use integrator::{Scratch, Sharing};
+use integrator::{Arrived, Scratch, Sharing};
 use light::Lights;
 use media::{Boundary, Dielectrics, Inside};
 pub use observer::Observer;
@@ -184,7 +184,8 @@ impl<'s> Tracer<'s> {
 
     /// The radiance that one sample adds to its pixel, watched.
     pub fn sample<O: Observer>(&self, x: u32, y: u32, sample: u32, observer: &mut O) -> Rgb {
-        self.trace_sample(x, y, sample, &mut Scratch::default(), observer)
+        let (arrived, weight) = self.trace_sample(x, y, sample, &mut Scratch::default(), observer);
+        weight * arrived.radiance
     }
 
     fn trace_tile<O: Observer>(
@@ -204,7 +205,9 @@ impl<'s> Tracer<'s> {
                     if control.is_cancelled() {
                         return Err(Cancelled);
                     }
-                    pixel.add(self.trace_sample(x, y, sample, &mut scratch, observer), scale);
+                    let (arrived, weight) = self.trace_sample(x, y, sample, &mut scratch, observer);
+                    pixel.add(weight * arrived.radiance, scale);
+                    pixel.cover(arrived.open, weight);
                 }
                 pixels.push(pixel);
             }
@@ -213,6 +216,7 @@ impl<'s> Tracer<'s> {
         Ok(pixels)
     }
 
+    /// What a sample brings, and its weight in its pixel.
     fn trace_sample<O: Observer>(
         &self,
         x: u32,
@@ -220,11 +224,11 @@ impl<'s> Tracer<'s> {
         sample: u32,
         scratch: &mut Scratch,
         observer: &mut O,
-    ) -> Rgb {
+    ) -> (Arrived, f64) {
         let trace = &self.scene.trace;
         let sampler = Sampler::new(trace.seed, x, y, sample);
         let (ray, weight) = self.eye.ray(x, y, trace.size, &sampler);
-        weight * integrator::radiance(self, ray, &sampler, scratch, observer)
+        (integrator::trace(self, ray, &sampler, scratch, observer), weight)
     }
 
     /// What a surface does at a point, or none where it does nothing.

@@ -47,7 +47,7 @@ fn cell_mean(tracer: &Tracer, cell: u32) -> Rgb {
             let [u, v] = sampler.pair(super::sampler::Pair::Film);
             let place = DVec2::new(f64::from(x) + u, f64::from(y) + v) / f64::from(CELLS);
             let ray = tracer.eye.through(2.0 * place - 1.0, &sampler);
-            integrator::radiance(tracer, ray, &sampler, &mut scratch, &mut ())
+            integrator::trace(tracer, ray, &sampler, &mut scratch, &mut ()).radiance
         })
         .sum();
     sum / f64::from(PATHS)

@@ -16,7 +16,8 @@ use crate::color::luminance;
 use crate::math::{DMat3, DVec2, DVec3, PI, pow};
 use crate::scene::shape::{Form, Placed, Quadric};
 use crate::scene::{
-    Camera, Develop, Filter, Light, MaterialId, OriginId, Primitive, PrimitiveId, Shape, Trace,
+    Background, Camera, Develop, Filter, Light, MaterialId, OriginId, Primitive, PrimitiveId, Projection,
+    Shape, Trace,
 };
 
 /// A scene without anything, whose camera at `from` looks towards `look` through a narrow pinhole.
@@ -28,6 +29,7 @@ fn scene(from: DVec3, look: DVec3) -> Scene {
         materials: Vec::new(),
         lights: Vec::new(),
         camera: Camera {
+            projection: Projection::Perspective,
             position: from,
             right,
             up,
@@ -43,6 +45,7 @@ fn scene(from: DVec3, look: DVec3) -> Scene {
             indirect: true,
             seed: 1,
             filter: Filter::Box,
+            background: Background::Sky,
         },
         develop: Develop { exposure: None, tonemap: Tonemap::Neutral },
     }
