@@ -12,6 +12,7 @@
 //! |---|---|---|
 //! | [`span`], [`source`], [`diagnostic`] | places, texts, what is said of them | terminals |
 //! | [`files`] | what a scene may read | the disk |
+//! | [`asset`] | the bytes of pictures to values | where the bytes came from |
 //! | [`math`], [`color`], [`units`], [`develop`] | arithmetic with the same bits everywhere | the language |
 //! | [`schema`] | the one table of kinds and fields | how they are checked or drawn |
 //! | [`syntax`] | text to tree; never fails | names, types, the scene |
@@ -21,16 +22,23 @@
 //! | [`scene`] | the picture in its simplest form | where it came from |
 //! | [`render`] | scene to film; cannot fail | places, files, syntax |
 //! | [`output`] | film to the bytes of image files, and back | files |
-//! | [`report`] | diagnostics to text for a person | what they are about |
+//! | [`explain`] | the page on each diagnostic | how it is shown |
+//! | [`inventory`] | what stands in a picture, counted | how it is shown |
+//! | [`mend`] | applying the edits that diagnostics offer | files |
+//! | [`report`] | diagnostics to text, for a person or a program | what they are about |
 
+pub mod asset;
 pub mod check;
 pub mod color;
 pub mod develop;
 pub mod diagnostic;
 pub mod eval;
+pub mod explain;
 pub mod files;
+pub mod inventory;
 pub mod lower;
 pub mod math;
+pub mod mend;
 pub mod output;
 pub mod render;
 pub mod report;
@@ -43,7 +51,9 @@ pub mod units;
 
 use diagnostic::{Code, Diagnostic};
 use eval::Origins;
-use lower::Overrides;
+use files::Files;
+use inventory::Inventory;
+use lower::{Overrides, Places};
 use scene::Scene;
 use source::Sources;
 use span::{SourceId, Span};
@@ -59,13 +69,15 @@ pub struct Compiled {
     pub diagnostics: Vec<Diagnostic>,
     /// One line for each default that was chosen for the user.
     pub notes: Vec<String>,
-    /// Where the source says how noisy the picture may be.
-    noise: Option<Span>,
+    /// What stands in the picture.
+    pub inventory: Inventory,
+    /// Where settings stand that only a finished picture can judge.
+    places: Places,
 }
 
 /// Compiles a source to a scene: parse, check, evaluate, lower. Every stage runs, also after errors, so that
-/// one run reports all that is wrong.
-pub fn compile(sources: &Sources, id: SourceId, overrides: &Overrides) -> Compiled {
+/// one run reports all that is wrong. `files` is what the source may read.
+pub fn compile(sources: &Sources, id: SourceId, overrides: &Overrides, files: &dyn Files) -> Compiled {
     let text = &sources.get(id).text;
     let (tree, mut diagnostics) = syntax::parse(id, text);
     let (program, found) = check::check(&tree, text);
@@ -76,7 +88,7 @@ pub fn compile(sources: &Sources, id: SourceId, overrides: &Overrides) -> Compil
     }
     let (things, found) = eval::eval(&program);
     diagnostics.extend(found);
-    let lowered = lower::lower(&things, overrides);
+    let lowered = lower::lower(&things, overrides, files);
     diagnostics.extend(lowered.diagnostics);
     if !diagnostic::any_errors(&diagnostics) {
         diagnostics.extend(lower::nothing_to_see(&things));
@@ -87,17 +99,91 @@ pub fn compile(sources: &Sources, id: SourceId, overrides: &Overrides) -> Compil
         (again.code, &again.primary, &again.message) == (first.code, &first.primary, &first.message)
     });
     let scene = lowered.scene.filter(|_| !diagnostic::any_errors(&diagnostics));
-    Compiled { scene, origins: things.origins, diagnostics, notes: lowered.notes, noise: lowered.noise }
+    Compiled {
+        scene,
+        inventory: Inventory::of(&things),
+        origins: things.origins,
+        diagnostics,
+        notes: lowered.notes,
+        places: lowered.places,
+    }
 }
 
 impl Compiled {
-    /// The warning of a render that ended noisier than the source asks for: `noise`, as a share of white, after
-    /// so many samples a pixel.
-    pub fn noise_not_reached(&self, noise: f64, samples: u32) -> Diagnostic {
-        let place = self.noise.unwrap_or(Span::new(SourceId(0), 0, 0));
-        let message = format!("the noise is still {:.2}% after {samples} samples a pixel", 100.0 * noise);
-        Diagnostic::new(Code::W0701, message, place)
-            .at("not reached")
-            .help("give larger lights, which are found more easily, or allow more noise")
+    /// What there is to say of a source that is not worth compiling.
+    pub fn refused(diagnostic: Diagnostic) -> Compiled {
+        Compiled {
+            scene: None,
+            origins: Origins::default(),
+            inventory: Inventory::default(),
+            diagnostics: vec![diagnostic],
+            notes: vec![],
+            places: Places::default(),
+        }
     }
+
+    /// What a finished picture gives cause to say.
+    pub fn judge(&self, finding: &Finding) -> Diagnostic {
+        let start = Span::new(SourceId(0), 0, 0);
+        match *finding {
+            Finding::Noisy { noise, samples } => {
+                let place = self.places.noise.unwrap_or(start);
+                let message =
+                    format!("the noise is still {:.2}% after {samples} samples a pixel", 100.0 * noise);
+                Diagnostic::new(Code::W0701, message, place)
+                    .at("not reached")
+                    .help("give larger lights, which are found more easily, or allow more noise")
+            }
+            Finding::Cut { share, bounces } => {
+                let message = format!(
+                    "about {:.0}% of the light is lost, since paths end after {bounces} bounces",
+                    100.0 * share
+                );
+                let help =
+                    format!("raise it: `render {{ bounces: {} }}`; or use darker colours", 4 * bounces);
+                Diagnostic::new(Code::W0702, message, self.places.bounces.unwrap_or(start))
+                    .at("too few")
+                    .help(help)
+            }
+            Finding::BurntOut { share, stops, fitting } => {
+                let message =
+                    format!("{:.0}% of the picture is burnt out to white at exposure {stops}", 100.0 * share);
+                let help = match self.places.exposure {
+                    Some(_) => format!("write `exposure: {fitting}`, which would fit, or `auto`"),
+                    None => format!("`--exposure {fitting}` would fit, or `auto`"),
+                };
+                Diagnostic::new(Code::W0703, message, self.places.exposure.unwrap_or(start))
+                    .at("too much")
+                    .help(help)
+            }
+        }
+    }
+}
+
+/// Something about a finished picture that is probably not meant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Finding {
+    /// It ended noisier than the source asks for.
+    Noisy {
+        /// As a share of white.
+        noise: f64,
+        /// Samples a pixel.
+        samples: u32,
+    },
+    /// The limit of bounces ended paths that still carried light.
+    Cut {
+        /// About the share of the light that is lost.
+        share: f64,
+        /// The limit.
+        bounces: u32,
+    },
+    /// Much of it is white, and was not before it was exposed.
+    BurntOut {
+        /// The share of its pixels.
+        share: f64,
+        /// The exposure that was given.
+        stops: f64,
+        /// The one that would fit.
+        fitting: f64,
+    },
 }

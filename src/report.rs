@@ -1,16 +1,21 @@
-//! Diagnostics to text for a person, through miette, which nothing else uses.
+//! Diagnostics to text: for a person, through miette, which nothing else uses; and for programs, as JSON, SARIF and
+//! GitHub's workflow commands.
 //!
 //! Sources may come from anywhere: a line is shown only around the place that is meant, however long it is,
 //! control characters are shown as `�` so that no text can steer the terminal, and only so many diagnostics
 //! are shown that the first of them is not swept away.
 
 mod excerpt;
+mod machine;
+mod sarif;
 
 use crate::diagnostic::{Diagnostic, Label, Severity};
 use crate::source::Sources;
 use crate::span::Span;
 use excerpt::Excerpt;
+pub use machine::{SCHEMA, github, json, short};
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, ThemeCharacters, ThemeStyles};
+pub use sarif::Sarif;
 use std::fmt;
 
 /// The most diagnostics that [`all`] shows.
@@ -80,10 +85,34 @@ pub fn human(diagnostic: &Diagnostic, sources: &Sources, style: Style) -> String
     for label in elsewhere {
         text.push_str(&format!("  {}: {}\n", sentence(&label.text), at(label.span, sources)));
     }
-    for &span in &diagnostic.uses {
-        text.push_str(&format!("  in `{}`, {}\n", head(sources.text(span)), at(span, sources)));
-    }
+    text.push_str(&uses(&diagnostic.uses, sources));
     text
+}
+
+/// The most lines that a chain of uses takes; of a longer one, its ends are shown.
+const MOST_USES: usize = 8;
+
+/// The chain of uses, outermost first. The turns of one loop are one line.
+fn uses(chain: &[Span], sources: &Sources) -> String {
+    let mut runs: Vec<(Span, usize)> = vec![];
+    for &span in chain {
+        match runs.last_mut() {
+            Some((last, count)) if *last == span => *count += 1,
+            _ => runs.push((span, 1)),
+        }
+    }
+    let line = |(span, count): &(Span, usize)| {
+        let times = if *count > 1 { format!(", {count} levels") } else { String::new() };
+        format!("  in `{}`, {}{times}\n", head(sources.text(*span)), at(*span, sources))
+    };
+    if runs.len() <= MOST_USES {
+        return runs.iter().map(line).collect();
+    }
+    let ends = (MOST_USES - 1) / 2;
+    let (first, rest) = runs.split_at(MOST_USES - 1 - ends);
+    let (middle, last) = rest.split_at(rest.len() - ends);
+    let between = format!("  … {} more levels\n", middle.iter().map(|(_, count)| count).sum::<usize>());
+    first.iter().map(line).chain([between]).chain(last.iter().map(line)).collect()
 }
 
 fn handler(diagnostic: &Diagnostic, style: Style) -> GraphicalReportHandler {
@@ -123,12 +152,16 @@ fn at(span: Span, sources: &Sources) -> String {
 /// The head of a statement, enough to know it by: up to its `{` or the end of the line.
 fn head(text: &str) -> String {
     const MOST: usize = 40;
-    let end = text.find(['{', '\n', '\r']).unwrap_or(text.len());
-    let text = text[..end].trim();
+    let text = first_line(text);
+    let text = text[..text.find('{').unwrap_or(text.len())].trim();
     match text.char_indices().nth(MOST) {
         Some((cut, _)) => printable(&text[..cut]) + "…",
         None => printable(text),
     }
+}
+
+fn first_line(text: &str) -> &str {
+    text[..text.find(['\n', '\r']).unwrap_or(text.len())].trim()
 }
 
 /// A sentence about a source, [`printable`], with what is too long to be read in it cut in its middle: it may

@@ -3,6 +3,7 @@
 //! Checking, lowering, messages and the reference page all read it, and no field is named anywhere else: the
 //! `kinds!` table also yields a module a kind (`sphere::RADIUS`, …) with a typed key a field.
 
+pub mod textures;
 mod types;
 
 use crate::units;
@@ -92,6 +93,10 @@ types! {
     Bool = FieldType::Bool;
     /// A linear colour.
     Color = FieldType::Color;
+    /// A colour or a texture.
+    Paint = FieldType::Paint;
+    /// A text.
+    Text = FieldType::Text;
     /// Three lengths.
     Point = FieldType::Tuple(3, units::LENGTH);
     /// Three numbers.
@@ -356,13 +361,13 @@ kinds! {
     /// Lambertian: scatters evenly, like plaster or paper. The report's opaque material.
     Material diffuse "diffuse" {
         /// Reflectance.
-        COLOR "color": Color = Value(DEFAULT_COLOR), REFLECTANCE;
+        COLOR "color": Paint = Value(DEFAULT_COLOR), REFLECTANCE;
     }
 
     /// A perfect mirror. The report's specular material.
     Material mirror "mirror" {
         /// Reflectance, the same at every angle.
-        COLOR "color": Color = Value("#f8f8f8"), REFLECTANCE;
+        COLOR "color": Paint = Value("#f8f8f8"), REFLECTANCE;
     }
 
     /// Glass, water and the like: refraction by Snell's law, reflection by Fresnel's equations. The report's
@@ -381,7 +386,7 @@ kinds! {
     /// A conductor: GGX microfacets, single scattering, with Schlick's Fresnel term.
     Material metal "metal" {
         /// Reflectance at normal incidence.
-        COLOR "color": Color = Value("#e0e0e0"), REFLECTANCE;
+        COLOR "color": Paint = Value("#e0e0e0"), REFLECTANCE;
         /// From 0, polished, to 1, rough (GGX with α = roughness²).
         ROUGHNESS "roughness": Number = Value("0"), within(0.0, 1.0);
     }
@@ -389,7 +394,7 @@ kinds! {
     /// A clear coat over a diffuse base; light reflected inside the coat is counted.
     Material plastic "plastic" {
         /// Reflectance of the base.
-        COLOR "color": Color = Value(DEFAULT_COLOR), REFLECTANCE;
+        COLOR "color": Paint = Value(DEFAULT_COLOR), REFLECTANCE;
         /// Refractive index of the coat.
         IOR "ior": Number = Value("1.5"), within(1.0, 10.0);
         /// Of the coat: from 0, polished, to 1, rough (GGX with α = roughness²).
@@ -398,8 +403,8 @@ kinds! {
 
     /// Glows, and reflects nothing. A closed shape glows outwards, an open one on both sides.
     Material emitter "emitter" rules [Rule::ExactlyOne(&["power", "radiance"])] {
-        /// Multiplies the power or the radiance.
-        COLOR "color": Color = Value("white"), NOT_NEGATIVE;
+        /// Multiplies the power or the radiance. A texture needs `radiance`: the power of what it leaves is not known.
+        COLOR "color": Paint = Value("white"), NOT_NEGATIVE;
         /// Radiated by the whole surface, on both sides where it is open.
         POWER "power": Power = Absent("from `radiance`"), NOT_NEGATIVE;
         /// Per steradian.
@@ -442,9 +447,14 @@ kinds! {
     }
 
     /// Light from everywhere beyond the scene; what is seen where nothing stands.
-    Light sky "sky" {
+    Light sky "sky" rules [Rule::Excludes("image", &["color"]), Rule::Needs("turn", "image")] {
         /// Multiplies the radiance.
         COLOR "color": Color = Value("white"), NOT_NEGATIVE;
+        /// A picture of all directions (longitude across, latitude down), as PNG, JPEG, WebP, HDR or EXR. It
+        /// multiplies the radiance. Its centre lies at −z, its top at +y.
+        IMAGE "image": Text = Absent("one `color`"), ANY;
+        /// Turns the picture about the y axis, as `turn(y: …)` does a thing: by 90deg its centre lies at −x.
+        TURN "turn": Angle = Value("0"), ANY;
         /// Per steradian.
         RADIANCE "radiance": Radiance = Value("1W/m2"), NOT_NEGATIVE;
     }

@@ -13,16 +13,20 @@ const EDGES: &[(&str, &[&str])] = &[
     ("math", &[]),
     ("color", &["math"]),
     ("units", &["math"]),
+    ("asset", &["math", "color"]),
     ("schema", &["units"]),
     ("develop", &["color", "math", "schema"]),
     ("syntax", &["span", "diagnostic", "units"]),
     ("check", &["span", "diagnostic", "color", "units", "schema", "syntax"]),
     ("eval", &["span", "diagnostic", "math", "color", "units", "schema", "syntax", "check", "scene"]),
-    ("scene", &["math", "color", "schema"]),
-    ("lower", &["span", "diagnostic", "math", "color", "schema", "eval", "scene"]),
+    ("scene", &["math", "color", "schema", "asset"]),
+    ("lower", &["span", "diagnostic", "files", "math", "color", "schema", "eval", "asset", "scene"]),
     ("render", &["math", "color", "develop", "scene"]),
     ("output", &["math", "color", "develop", "scene"]),
-    ("report", &["span", "source", "diagnostic"]),
+    ("explain", &["diagnostic"]),
+    ("inventory", &["schema", "eval", "scene"]),
+    ("mend", &["span", "diagnostic"]),
+    ("report", &["span", "source", "diagnostic", "explain"]),
 ];
 
 #[test]

@@ -6,6 +6,8 @@ mod architecture;
 mod command;
 mod diagnostics;
 mod documents;
+mod folder;
 mod dump;
 mod parse;
 mod pictures;
+mod scenes;

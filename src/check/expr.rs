@@ -53,6 +53,7 @@ impl Checker<'_> {
                 (ExprKind::Make(Box::new(make)), ty)
             }
             Tree::Unary { operator, operand } => self.unary(*operator, operand),
+            Tree::List(_) | Tree::Index { .. } | Tree::If { .. } => (ExprKind::Invalid, Type::Invalid),
             Tree::Binary { operator, at, left, right } => self.binary(*operator, *at, left, right),
         };
         let kind = if ty == Type::Invalid { ExprKind::Invalid } else { kind };

@@ -1,7 +1,7 @@
 //! The built-in functions and what they take.
 
 use super::types::{Element, NUMBER, Type};
-use super::{Checker, Expr, ExprKind, errors};
+use super::{Checker, Expr, ExprKind, errors, textures};
 use crate::diagnostic::Code;
 use crate::span::Span;
 use crate::syntax::ast::{Argument, Name};
@@ -90,6 +90,14 @@ functions! {
     Hsv "hsv" "hsv(angle, s, v)",
     /// The colour of a glowing body, at luminance 1.
     Blackbody "blackbody" "blackbody(temperature)",
+    /// Cubes of two colours or textures that alternate.
+    Checker "checker" "checker(a, b, size)",
+    /// Layers of two colours or textures that alternate.
+    Stripes "stripes" "stripes(a, b, width, along)",
+    /// Clouds of two colours or textures.
+    Noise "noise" "noise(a, b, size, octaves, seed)",
+    /// A picture from a file, laid on the surface.
+    Image "image" "image(file, size)",
     /// A placement that enlarges about the origin.
     Scale "scale" "scale(k) or scale(x, y, z)",
     /// A placement that turns about one axis: from x to y about z, and so on.
@@ -113,6 +121,10 @@ impl Checker<'_> {
             self.report(errors::unknown(Code::E0101, "function", name, &names));
             return (ExprKind::Invalid, Type::Invalid);
         };
+        if let Some(parameters) = textures::parameters(function) {
+            let values = values.into_iter().zip(types).collect();
+            return self.texture(function, parameters, arguments, values, span);
+        }
         let axis = match self.argument_names(function, arguments) {
             Ok(axis) => axis,
             Err(diagnostic) => {
@@ -165,7 +177,7 @@ impl Checker<'_> {
             Atan2 | Mod | Pow | Dot | Cross => &[2],
             Clamp | Mix | Rgb | Srgb | Hsv => &[3],
             Scale | Move => &[1, 3],
-            Min | Max => &[],
+            Min | Max | Checker | Stripes | Noise | Image => &[],
         };
         if counts.is_empty() && values.len() < 2 || !counts.is_empty() && !counts.contains(&values.len()) {
             self.report(errors::argument_count(function, span, values.len()));
@@ -197,6 +209,8 @@ impl Checker<'_> {
                 arguments.root(element)
             }
             Mix => arguments.mix(),
+            // By their parameters.
+            Checker | Stripes | Noise | Image => None,
             Length => arguments.triple(0, None).map(Type::Scalar),
             Normalize => arguments.triple(0, None).map(|_| Type::Tuple(3, NUMBER)),
             Dot | Cross => {

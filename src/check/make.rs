@@ -5,7 +5,7 @@ use super::{Base, Checker, Expr, ExprKind, Make, errors, scope::Item};
 use crate::diagnostic::Diagnostic;
 use crate::schema::{Category, Field, FieldType, KindId, Preset, Rule};
 use crate::span::Span;
-use crate::syntax::ast::{self, Entry, ExprKind as Tree, Name, Statement};
+use crate::syntax::ast::{self, Entry, ExprKind as Tree, Name, StatementKind};
 use crate::units;
 
 impl Checker<'_> {
@@ -15,16 +15,16 @@ impl Checker<'_> {
         let expr = Expr { kind: ExprKind::Make(Box::new(make)), span: construct.span };
         let Type::Made(kind, given) = ty else { return (Expr::invalid(construct.span), Type::Invalid) };
         match kind.get().category {
-            Category::Material => self.report(errors::material_drawn(&construct.kind)),
-            Category::Block if !top_level => self.report(errors::block_inside(&construct.kind, kind)),
-            _ => self.complete(kind, given, construct.kind.span),
+            Category::Material => self.report(errors::material_drawn(&construct.kind.first)),
+            Category::Block if !top_level => self.report(errors::block_inside(&construct.kind.first, kind)),
+            _ => self.complete(kind, given, construct.kind.first.span),
         }
         (expr, Type::Thing(kind))
     }
 
     /// A thing, in the picture or not. What is missing is for whoever uses it to say.
     pub(super) fn make(&mut self, construct: &ast::Construct) -> (Make, Type) {
-        let (base, known) = self.kind_of(&construct.kind);
+        let (base, known) = self.kind_of(&construct.kind.first);
         let holds = known.is_some_and(|(kind, _)| kind.get().category == Category::Group);
         let Sorted { items, parts, misplaced } =
             self.sort_entries(&construct.body.entries, known.map(|(kind, _)| kind), holds);
@@ -74,23 +74,23 @@ impl Checker<'_> {
                 }
                 continue;
             };
-            match &**statement {
-                Statement::Thing { construct, name } if !holds => {
-                    let field = kind.and_then(|kind| self.part_field(kind, &construct.kind));
+            match &statement.kind {
+                StatementKind::Thing { construct, name } if !holds => {
+                    let field = kind.and_then(|kind| self.part_field(kind, &construct.kind.first));
                     match (kind, field, name) {
                         (_, Some(index), None) => parts.push((index, construct)),
                         (Some(kind), Some(index), Some(name)) => {
-                            self.report(errors::named_part(&construct.kind, name, kind));
+                            self.report(errors::named_part(&construct.kind.first, name, kind));
                             parts.push((index, construct));
                         }
                         (Some(kind), None, _) => {
-                            self.report(errors::cannot_hold(&construct.kind, kind));
+                            self.report(errors::cannot_hold(&construct.kind.first, kind));
                             misplaced.push(construct);
                         }
                         (None, ..) => {}
                     }
                 }
-                statement => items.push(Item::Statement(statement)),
+                _ => items.push(Item::Statement(statement)),
             }
         }
         Sorted { items, parts, misplaced }
@@ -150,13 +150,13 @@ impl Checker<'_> {
         }
         for (index, construct) in parts {
             if let Some(first) = places[*index] {
-                self.report(errors::repeated(&construct.kind, first));
+                self.report(errors::repeated(&construct.kind.first, first));
                 continue;
             }
-            places[*index] = Some(construct.kind.span);
+            places[*index] = Some(construct.kind.first.span);
             let (part, ty) = self.make(construct);
             if let Type::Made(part, given) = ty {
-                self.complete(part, given, construct.kind.span);
+                self.complete(part, given, construct.kind.first.span);
             }
             make.fields.push((*index, Expr { kind: ExprKind::Make(Box::new(part)), span: construct.span }));
         }
@@ -294,13 +294,15 @@ fn broken_rule(kind: KindId, given: FieldSet, place: Span) -> Option<Diagnostic>
 }
 
 /// Whether a value of a type can stand in a field.
-fn accepts(field: FieldType, ty: Type) -> bool {
+pub(super) fn accepts(field: FieldType, ty: Type) -> bool {
     match (field, ty) {
         (_, Type::Invalid) => true,
         (FieldType::Scalar(dim), Type::Scalar(element)) => element.fits(dim),
         (FieldType::Int, Type::Scalar(element)) => element.is_int(),
         (FieldType::Bool, Type::Bool) => true,
         (FieldType::Color, Type::Color) => true,
+        (FieldType::Paint, Type::Color | Type::Texture) => true,
+        (FieldType::Text, Type::Text) => true,
         (FieldType::Tuple(_, _), Type::Scalar(Element::Zero)) => true,
         (FieldType::Tuple(count, dim), Type::Tuple(given, element)) => count == given && element.fits(dim),
         (FieldType::IntTuple(count), Type::Tuple(given, element)) => count == given && element.is_int(),

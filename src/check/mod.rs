@@ -9,9 +9,11 @@ mod expr;
 mod functions;
 mod make;
 mod scope;
+mod textures;
 mod types;
 
 pub use functions::Function;
+pub use textures::parameters as texture_parameters;
 pub use types::{Element, FieldSet, Type, describe_wanted};
 
 use crate::color::Rgb;

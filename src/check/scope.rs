@@ -5,7 +5,7 @@ use super::{Binding, Block, Checker, Expr, ExprKind, Type, errors, functions, ty
 use crate::diagnostic::Code;
 use crate::schema;
 use crate::span::Span;
-use crate::syntax::ast::{self, Entry, ExprKind as Tree, Keyword, Name, Statement};
+use crate::syntax::ast::{self, Entry, ExprKind as Tree, Keyword, Name, Statement, StatementKind};
 use crate::{color, units};
 use smol_str::SmolStr;
 use std::collections::BTreeMap;
@@ -37,27 +37,31 @@ impl Scope {
     }
 }
 
-impl Item<'_> {
-    fn name(&self) -> Option<&Name> {
+impl<'a> Item<'a> {
+    fn name(&self) -> Option<&'a Name> {
         match self {
-            Item::Statement(Statement::Thing { name, .. }) => name.as_ref(),
-            Item::Statement(Statement::Definition { name, .. }) => Some(name),
+            Item::Statement(statement) => match &statement.kind {
+                StatementKind::Thing { name, .. } => name.as_ref(),
+                StatementKind::Definition { name, .. }
+                | StatementKind::Param { name, .. }
+                | StatementKind::Part { name, .. }
+                | StatementKind::Import { name, .. }
+                | StatementKind::Function { name, .. } => Some(name),
+                StatementKind::For { .. } | StatementKind::If { .. } | StatementKind::Assert { .. } => None,
+            },
             Item::Broken(broken) => broken.name.as_ref(),
         }
     }
 
     fn span(&self) -> Span {
         match self {
-            Item::Statement(Statement::Thing { name, construct }) => {
-                name.as_ref().map_or(construct.span, |name| construct.span.to(name.span))
-            }
-            Item::Statement(Statement::Definition { span, .. }) => *span,
+            Item::Statement(statement) => statement.span,
             Item::Broken(broken) => broken.span,
         }
     }
 
     fn drawn(&self) -> bool {
-        matches!(self, Item::Statement(Statement::Thing { .. }))
+        matches!(self, Item::Statement(Statement { kind: StatementKind::Thing { .. }, .. }))
     }
 }
 
@@ -181,12 +185,15 @@ impl Checker<'_> {
     fn item(&mut self, item: &Item, top_level: bool) -> (Expr, Type) {
         match item {
             Item::Broken(broken) => (Expr::invalid(broken.span), Type::Invalid),
-            Item::Statement(Statement::Thing { construct, .. }) => self.drawn(construct, top_level),
-            Item::Statement(Statement::Definition { keyword, name, value, .. }) => {
-                let (checked, ty) = self.infer(value);
-                self.keyword_fits(*keyword, name, value, ty);
-                (checked, ty)
-            }
+            Item::Statement(statement) => match &statement.kind {
+                StatementKind::Thing { construct, .. } => self.drawn(construct, top_level),
+                StatementKind::Definition { keyword, name, value } => {
+                    let (checked, ty) = self.infer(value);
+                    self.keyword_fits(*keyword, name, value, ty);
+                    (checked, ty)
+                }
+                _ => (Expr::invalid(statement.span), Type::Invalid),
+            },
         }
     }
 
@@ -269,10 +276,7 @@ fn dependencies(items: &[Item], scope: &Scope) -> Vec<Vec<usize>> {
             let mut used = vec![];
             let mut visit = |name: &str| used.extend(scope.slots.get(name));
             match item {
-                Item::Statement(Statement::Thing { construct, .. }) => {
-                    names_in_construct(construct, &mut visit)
-                }
-                Item::Statement(Statement::Definition { value, .. }) => names_in(value, &mut visit),
+                Item::Statement(statement) => names_in_statement(statement, &mut visit),
                 Item::Broken(_) => {}
             }
             used.sort_unstable();
@@ -282,16 +286,21 @@ fn dependencies(items: &[Item], scope: &Scope) -> Vec<Vec<usize>> {
         .collect()
 }
 
+fn names_in_statement(statement: &Statement, visit: &mut impl FnMut(&str)) {
+    match &statement.kind {
+        StatementKind::Thing { construct, .. } => names_in_construct(construct, visit),
+        StatementKind::Definition { value, .. } => names_in(value, visit),
+        _ => {}
+    }
+}
+
 fn names_in_construct(construct: &ast::Construct, visit: &mut impl FnMut(&str)) {
-    visit(&construct.kind.text);
+    visit(&construct.kind.first.text);
     for entry in &construct.body.entries {
         match entry {
             Entry::Field(field) if is_word(field) => {}
             Entry::Field(field) => names_in(&field.value, visit),
-            Entry::Statement(statement) => match &**statement {
-                Statement::Thing { construct, .. } => names_in_construct(construct, visit),
-                Statement::Definition { value, .. } => names_in(value, visit),
-            },
+            Entry::Statement(statement) => names_in_statement(statement, visit),
             Entry::Broken(_) => {}
         }
     }
@@ -309,12 +318,21 @@ fn names_in(expr: &ast::Expr, visit: &mut impl FnMut(&str)) {
     match &expr.kind {
         Tree::Name(name) => visit(name),
         Tree::Construct(construct) => names_in_construct(construct, visit),
-        Tree::Tuple(parts) => parts.iter().for_each(|part| names_in(part, visit)),
+        Tree::Tuple(parts) | Tree::List(parts) => parts.iter().for_each(|part| names_in(part, visit)),
         Tree::Call { arguments, .. } => {
             arguments.iter().for_each(|argument| names_in(&argument.value, visit))
         }
         Tree::Scaled { value, .. } | Tree::Paren(value) | Tree::Member { value, .. } => {
             names_in(value, visit)
+        }
+        Tree::Index { value, index } => {
+            names_in(value, visit);
+            names_in(index, visit);
+        }
+        Tree::If { condition, then, otherwise } => {
+            names_in(condition, visit);
+            names_in(then, visit);
+            names_in(otherwise, visit);
         }
         Tree::Unary { operand, .. } => names_in(operand, visit),
         Tree::Binary { left, right, .. } => {

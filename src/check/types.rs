@@ -18,6 +18,8 @@ pub enum Type {
     Text,
     /// A linear colour.
     Color,
+    /// A colour by place.
+    Texture,
     /// A placement.
     Transform,
     /// A prototype, or a value written in place.
@@ -101,6 +103,7 @@ impl Type {
             Type::Bool => "true or false".into(),
             Type::Text => "a text".into(),
             Type::Color => "a colour".into(),
+            Type::Texture => "a texture".into(),
             Type::Transform => "a placement".into(),
             Type::Made(kind, _) if matches!(kind.get().category, Category::Material) => {
                 format!("{} `{}`", article(kind), kind.get().name)
@@ -135,6 +138,8 @@ pub fn describe_wanted(ty: FieldType) -> String {
         FieldType::Int => "a whole number".into(),
         FieldType::Bool => "`true` or `false`".into(),
         FieldType::Color => "a colour".into(),
+        FieldType::Paint => "a colour or texture".into(),
+        FieldType::Text => "a text".into(),
         FieldType::Tuple(count, dim) => format!("{} {}", word(count), plural(dim)),
         FieldType::IntTuple(count) => format!("{} whole numbers", word(count)),
         FieldType::Transform => "a placement".into(),

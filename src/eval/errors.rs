@@ -1,6 +1,6 @@
 //! One function for each thing that can be wrong with a value.
 
-use super::{MAX_LEVELS, MAX_THINGS, Value};
+use super::{MAX_LEVELS, MAX_TEXTURE_LEVELS, MAX_THINGS, Value};
 use crate::check::Function;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::schema::{Field, FieldType, KindId, Range};
@@ -36,6 +36,10 @@ fn show_value(value: &Value) -> String {
 
 /// What the range of a field refuses, or none where the value lies in it.
 pub(super) fn out_of_range(kind: KindId, field: &Field, value: &Value, span: Span) -> Option<Diagnostic> {
+    if let Value::Texture(texture) = value {
+        let parts = texture.parts.iter().flatten();
+        return parts.into_iter().find_map(|part| out_of_range(kind, field, &part.value, part.span));
+    }
     let parts = match value {
         Value::Number(x) => vec![*x],
         Value::Color(c) => c.to_array().to_vec(),
@@ -48,16 +52,42 @@ pub(super) fn out_of_range(kind: KindId, field: &Field, value: &Value, span: Spa
     let dim = dimension(field.ty);
     let shown = show_quantity(bad, dim);
     let allowed = allowed(field.ty, field.range);
-    if field.ty == FieldType::Color && bad > field.range.high {
+    if is_color(field.ty) && bad > field.range.high {
         let message = format!("this `{}` reflects more than it receives", kind.get().name);
         let diagnostic = Diagnostic::new(Code::E0402, message, span);
         return Some(
             diagnostic.at(format!("a channel of {shown}")).help("no channel of a reflectance is above 1"),
         );
     }
-    let what = if field.ty == FieldType::Color { "channels of " } else { "" };
+    let what = if is_color(field.ty) { "channels of " } else { "" };
     let message = format!("{what}`{}` must be {allowed}, this is {shown}", field.name);
     Some(Diagnostic::new(Code::E0401, message, span).at("out of range").help(field.doc.to_string()))
+}
+
+fn is_color(ty: FieldType) -> bool {
+    matches!(ty, FieldType::Color | FieldType::Paint)
+}
+
+/// What the range of a texture's argument refuses.
+pub(super) fn argument_out_of_range(field: &Field, value: &Value, span: Span) -> Option<Diagnostic> {
+    let Value::Number(x) = value else { return None };
+    if field.range.contains(*x) {
+        return None;
+    }
+    let (allowed, shown) = (allowed(field.ty, field.range), show_quantity(*x, dimension(field.ty)));
+    let message = format!("`{}` must be {allowed}, this is {shown}", field.name);
+    Some(Diagnostic::new(Code::E0401, message, span).at("out of range").help(field.doc))
+}
+
+pub(super) fn no_direction(field: &Field, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0403, format!("`{}` has length 0, and so no direction", field.name), span)
+        .at("points nowhere")
+        .help("such as `(0, 1, 0)` for upwards")
+}
+
+pub(super) fn too_many_textures(span: Span) -> Diagnostic {
+    let message = format!("more than {MAX_TEXTURE_LEVELS} textures within each other");
+    Diagnostic::new(Code::E0406, message, span).at("one too many")
 }
 
 fn dimension(ty: FieldType) -> Dim {

@@ -79,6 +79,7 @@ pub(super) fn call(
             Ok(Color(color::blackbody(*kelvin)))
         }
         (Blackbody, _) => wrong("a glowing body is between 100K and 1 000 000 000K hot"),
+        (Checker | Stripes | Noise | Image, _) => super::texture::make(function, arguments, spans),
         (Scale, [Number(k)]) => transform(DAffine3::from_scale(DVec3::splat(*k))),
         (Scale, [Number(x), Number(y), Number(z)]) => transform(DAffine3::from_scale(DVec3::new(*x, *y, *z))),
         (Turn, [Number(axis), Number(angle)]) => {

@@ -8,10 +8,12 @@ mod expr;
 mod functions;
 mod origin;
 mod read;
+mod texture;
 mod value;
 
 pub use origin::Origins;
 pub use read::{Aim, Focus, Read};
+pub use texture::{MAX_TEXTURE_LEVELS, Paint, Pattern, Texture};
 pub use value::{Given, Made, ThingId, Value};
 
 use crate::check::{Base, Block, Expr, ExprKind, Make, Program};

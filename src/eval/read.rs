@@ -1,9 +1,11 @@
 //! Reading values as the types that the schema promises.
 
+use super::texture::Paint;
 use super::value::{Made, ThingId, Value};
 use crate::color::Rgb;
 use crate::math::{DAffine3, DVec3};
 use crate::schema::{self, Background, Filter, Tonemap, Typed};
+use smol_str::SmolStr;
 use std::rc::Rc;
 
 /// A type of fields whose values can be read.
@@ -52,6 +54,8 @@ reads! {
     Int as f64: Value::Number(x) => Some(*x);
     Bool as bool: Value::Bool(x) => Some(*x);
     Color as Rgb: Value::Color(color) => Some(*color);
+    Paint as Paint: value => paint(value);
+    Text as SmolStr: Value::Text(text) => Some(text.clone());
     Transform as DAffine3: Value::Transform(transform) => Some(**transform);
     Made as Rc<Made>: Value::Made(made) => Some(made.clone());
     LensPart as Rc<Made>: Value::Made(made) => Some(made.clone());
@@ -92,6 +96,14 @@ fn triple(value: &Value) -> Option<DVec3> {
     match value {
         Value::Tuple(triple) => Some(*triple),
         Value::Number(0.0) => Some(DVec3::ZERO),
+        _ => None,
+    }
+}
+
+fn paint(value: &Value) -> Option<Paint> {
+    match value {
+        Value::Color(color) => Some(Paint::Plain(*color)),
+        Value::Texture(texture) => Some(Paint::Texture(texture.clone())),
         _ => None,
     }
 }

@@ -1,6 +1,7 @@
 //! Values.
 
 use super::read::Read;
+use super::texture::Texture;
 use crate::color::Rgb;
 use crate::math::{DAffine3, DVec3};
 use crate::schema::{Key, KindId, Preset};
@@ -23,6 +24,8 @@ pub enum Value {
     Text(SmolStr),
     /// A linear colour; finite.
     Color(Rgb),
+    /// A colour by place.
+    Texture(Rc<Texture>),
     /// A word that the field understands.
     Word(&'static str),
     /// A placement.

@@ -71,6 +71,9 @@ impl Lowering<'_> {
             Some(lens) => self.opening(lens, position, forward, look)?,
             None => (0.0, 1.0),
         };
+        if self.overrides.exposure.is_none() {
+            self.out.places.exposure = made.given(camera::EXPOSURE).map(|(_, span)| span);
+        }
         let camera = Camera { projection, position, right, up, forward, half_extent, lens_radius, focus };
         Some((camera, self.things.read(&made, camera::EXPOSURE)))
     }

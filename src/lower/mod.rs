@@ -5,16 +5,22 @@ mod camera;
 mod errors;
 mod material;
 mod shape;
+mod sky;
+mod texture;
 
 use crate::color::Rgb;
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Aim, Thing, ThingId, Things};
-use crate::math::{DVec3, PI, sin};
+use crate::files::Files;
+use crate::math::{DAffine3, DVec3, PI, sin};
 use crate::scene::shape::Bounds;
-use crate::scene::{Develop, Light, Material, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace};
-use crate::schema::{Category, DEFAULT_SAMPLES, light, render, sky, sun};
+use crate::scene::{
+    Develop, FrameId, Light, Material, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace,
+};
+use crate::schema::{self, Category, DEFAULT_SAMPLES, light, render, sun};
 use crate::span::Span;
 use material::Materials;
+use texture::Textures;
 
 /// The most pixels a picture may have.
 pub const MAX_PIXELS: u64 = 100_000_000;
@@ -45,17 +51,30 @@ pub struct Lowered {
     pub notes: Vec<String>,
     /// What is wrong.
     pub diagnostics: Vec<Diagnostic>,
-    /// Where the noise target stands.
+    /// Where settings stand that only a finished picture can judge.
+    pub places: Places,
+}
+
+/// Where settings stand that only a finished picture can judge; none where the source does not give them.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Places {
+    /// The noise target.
     pub noise: Option<Span>,
+    /// The limit of bounces.
+    pub bounces: Option<Span>,
+    /// The exposure that is in force.
+    pub exposure: Option<Span>,
 }
 
 /// Lowers the things of a picture. Things with errors, which were reported, are left out.
-pub fn lower(things: &Things, overrides: &Overrides) -> Lowered {
+pub fn lower(things: &Things, overrides: &Overrides, files: &dyn Files) -> Lowered {
     let mut lowering = Lowering {
         things,
         overrides,
         primitives: vec![],
         materials: Materials::default(),
+        textures: Textures::new(files),
+        frames: vec![],
         lights: vec![],
         extents: vec![Extent::Nowhere; things.things.len()],
         bare: 0,
@@ -69,9 +88,13 @@ pub fn lower(things: &Things, overrides: &Overrides) -> Lowered {
     if let (Some(camera), Some(size)) = (camera, size) {
         let (trace, tonemap) = lowering.trace(&blocks, size);
         lowering.warn_inside(camera.0.position, blocks.camera);
+        let (textures, images) = lowering.textures.finish();
         lowering.out.scene = Some(Scene {
             primitives: lowering.primitives,
             materials: lowering.materials.finish(),
+            textures,
+            images,
+            frames: lowering.frames,
             lights: lowering.lights,
             camera: camera.0,
             trace,
@@ -92,6 +115,8 @@ struct Lowering<'a> {
     overrides: &'a Overrides,
     primitives: Vec<Primitive>,
     materials: Materials,
+    textures: Textures<'a>,
+    frames: Vec<DAffine3>,
     lights: Vec<Light>,
     /// By thing.
     extents: Vec<Extent>,
@@ -133,7 +158,7 @@ impl<'a> Lowering<'a> {
             let sound =
                 thing.made.is_sound() && thing.material.as_ref().is_none_or(|given| given.value.is_sound());
             let kind = thing.made.kind;
-            if kind == sky::KIND {
+            if kind == schema::sky::KIND {
                 if let Some(first) = sky_place {
                     self.report(errors::second("sky", thing.made.span, first));
                     continue;
@@ -150,10 +175,8 @@ impl<'a> Lowering<'a> {
                 spots.extend(thing.made.given(light::AIM).map(|(aim, span)| (index, thing, aim, span)));
             } else if kind == sun::KIND {
                 self.sun(thing);
-            } else if kind == sky::KIND {
-                let color = self.things.read(&thing.made, sky::COLOR);
-                let radiance = self.things.read(&thing.made, sky::RADIANCE);
-                self.add_light(thing, Light::Sky { radiance: color * radiance });
+            } else if kind == schema::sky::KIND {
+                self.sky(thing);
             }
         }
         for (index, thing, aim, span) in spots {
@@ -195,7 +218,7 @@ impl<'a> Lowering<'a> {
         let extent = shape.bounds().map_or(Extent::Endless, Extent::Box);
         self.extents[index] = extent;
         let material = match &thing.material {
-            Some(given) => match material::lower(self.things, given, &shape) {
+            Some(given) => match material::lower(&mut self.textures, self.things, given, &shape) {
                 Ok(material) => material,
                 Err(diagnostic) => return self.report(self.used_at(thing, *diagnostic)),
             },
@@ -204,12 +227,16 @@ impl<'a> Lowering<'a> {
                 material::bare(self.things)
             }
         };
-        self.add_surface(shape, material, thing.origin);
+        let frame = material.texture().map(|_| {
+            self.frames.push(thing.world_from_object.inverse());
+            FrameId(self.frames.len() as u32 - 1)
+        });
+        self.add_surface(shape, material, frame, thing.origin);
     }
 
-    fn add_surface(&mut self, shape: Shape, material: Material, origin: OriginId) {
+    fn add_surface(&mut self, shape: Shape, material: Material, frame: Option<FrameId>, origin: OriginId) {
         let material = self.materials.add(material);
-        self.primitives.push(Primitive { shape, material, origin });
+        self.primitives.push(Primitive { shape, material, frame, origin });
     }
 
     /// A lamp: a point, or a glowing sphere.
@@ -241,7 +268,7 @@ impl<'a> Lowering<'a> {
                 if !radiance.is_finite() {
                     return self.report(self.used_at(thing, errors::glows_beyond(made.span)));
                 }
-                self.add_surface(shape, Material::Emitter { radiance }, thing.origin);
+                self.add_surface(shape, Material::Emitter { radiance, pattern: None }, None, thing.origin);
             }
             Err(diagnostic) => self.report(self.used_at(thing, *diagnostic)),
         }
@@ -263,7 +290,7 @@ impl<'a> Lowering<'a> {
         let finite = match light {
             Light::Point { intensity, .. } | Light::Spot { intensity, .. } => intensity.is_finite(),
             Light::Sun { irradiance, .. } => irradiance.is_finite(),
-            Light::Sky { radiance } => radiance.is_finite(),
+            Light::Sky { radiance, .. } => radiance.is_finite(),
         };
         match finite {
             true => self.lights.push(light),
@@ -350,7 +377,8 @@ impl<'a> Lowering<'a> {
         let made = blocks.render.map(|thing| thing.made.clone()).unwrap_or_else(|| plain(render::KIND));
         let samples = made.given(render::SAMPLES).map(|(samples, _)| samples as u32);
         let noise = made.given(render::NOISE);
-        self.out.noise = noise.map(|(_, span)| span);
+        self.out.places.noise = noise.map(|(_, span)| span);
+        self.out.places.bounces = made.given(render::BOUNCES).map(|(_, span)| span);
         let target = match (self.overrides.samples.or(samples), noise) {
             (Some(samples), _) => Target::Samples(samples),
             (None, Some((noise, _))) => Target::Noise(noise),
@@ -390,7 +418,7 @@ impl<'a> Lowering<'a> {
                 .iter()
                 .any(|thing| thing.made.kind.get().category == Category::Light || !thing.made.is_sound());
             if !lights {
-                self.lights.push(Light::Sky { radiance: Rgb::ONE });
+                self.lights.push(Light::Sky { radiance: Rgb::ONE, panorama: None });
                 self.out.notes.push("no light: a soft white sky, as `sky {}`".into());
             }
         }

@@ -10,6 +10,7 @@ mod linear;
 mod openexr;
 
 use crate::color::Rgb;
+use crate::develop::is_burnt_out;
 use crate::scene::Tonemap;
 use rayon::prelude::*;
 use std::fmt;
@@ -57,6 +58,12 @@ impl Picture {
         let rows = (0..size[1]).into_par_iter().flat_map_iter(row);
         let alpha = rows.map(|(x, y)| share(alpha(x, y) as f32)).collect();
         Picture { alpha: unless_whole(alpha), ..self }
+    }
+
+    /// The share of the pixels that [`is_burnt_out`].
+    pub fn burnt_out(&self, stops: f64, tonemap: Tonemap) -> f64 {
+        let burnt = |pixel: &&[f32; 3]| is_burnt_out(Rgb::from_array(pixel.map(f64::from)), stops, tonemap);
+        self.pixels.iter().filter(burnt).count() as f64 / self.pixels.len().max(1) as f64
     }
 
     /// Rows of pixels from the top.

@@ -4,13 +4,15 @@
 //! Each `sample` stands beside the `pdf` with which a ray that was scattered towards the light would have been
 //! drawn, so that the two ways can share the work (multiple importance sampling).
 
+mod panorama;
 mod surface;
 
 use super::shape::{Face, Place, SurfacePoint};
 use super::warp;
 use crate::color::{Rgb, luminance};
 use crate::math::{DVec3, PI, basis};
-use crate::scene::{Light, Material, PrimitiveId, Scene, Shape};
+use crate::scene::{Light, Material, Paint, PrimitiveId, Scene, Shape};
+use panorama::Sky;
 use std::collections::BTreeMap;
 use surface::Glowing;
 
@@ -40,7 +42,7 @@ pub struct LightSample {
     /// How far away it is, maybe infinitely.
     pub distance: f64,
     /// Radiance from there if nothing is in between; of a point or a distant one its irradiance on a surface
-    /// that faces it.
+    /// that faces it. Of a glowing surface with a pattern it is what the pattern multiplies.
     pub radiance: Rgb,
     /// Density in solid angle; 1 where there is but one direction.
     pub pdf: f64,
@@ -53,8 +55,8 @@ pub struct LightSample {
 /// A point on a glowing surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
-    /// Where.
-    pub p: DVec3,
+    /// Where, with its normal.
+    pub point: SurfacePoint,
     /// On which surface.
     pub place: Place,
     /// Whether the surface may hide its own points.
@@ -72,7 +74,12 @@ pub struct Lights {
 /// One of them.
 pub struct Lamp {
     source: Source,
+    /// What a pattern or panorama multiplies, if there is one.
     radiance: Rgb,
+    /// Luminance of the mean radiance.
+    strength: f64,
+    /// The greatest channel of the radiance.
+    peak: f64,
     kind: Kind,
 }
 
@@ -92,6 +99,7 @@ enum Kind {
         sine: f64,
     },
     Sky,
+    Panorama(Box<Sky>),
     Sphere {
         id: PrimitiveId,
         center: DVec3,
@@ -126,17 +134,22 @@ const UNIFORM: f64 = 0.1;
 impl Lights {
     /// Collects the lights of a scene. Surfaces without end are left out: only scattered rays find them.
     pub fn new(scene: &Scene) -> Lights {
-        let lights = (0..).zip(&scene.lights).map(|(i, light)| Lamp::from_light(Source::Light(i), light));
+        let lights =
+            (0..).zip(&scene.lights).map(|(i, light)| Lamp::from_light(scene, Source::Light(i), light));
         let glowing = (0..).map(PrimitiveId).zip(&scene.primitives).filter_map(|(id, primitive)| match scene
             .material(primitive)
         {
-            Material::Emitter { radiance } => Lamp::from_surface(id, &primitive.shape, *radiance),
+            Material::Emitter { radiance, pattern } => {
+                let pattern = pattern.map_or(Paint::Plain(Rgb::ONE), Paint::Texture);
+                let mean = *radiance * scene.mean(pattern);
+                let peak = *radiance * scene.peak(pattern);
+                Lamp::from_surface(id, &primitive.shape, *radiance, mean, peak)
+            }
             _ => None,
         });
-        let lamps: Vec<Lamp> =
-            lights.chain(glowing).filter(|lamp| lamp.radiance.max_element() > 0.0).collect();
+        let lamps: Vec<Lamp> = lights.chain(glowing).filter(|lamp| lamp.peak > 0.0).collect();
         let by_source = lamps.iter().zip(0..).map(|(lamp, index)| (lamp.source, index)).collect();
-        let is_beyond = |lamp: &Lamp| matches!(lamp.kind, Kind::Sky | Kind::Sun { .. });
+        let is_beyond = |lamp: &Lamp| matches!(lamp.kind, Kind::Sky | Kind::Panorama(_) | Kind::Sun { .. });
         let beyond =
             lamps.iter().zip(0..).filter(|(lamp, _)| is_beyond(lamp)).map(|(_, index)| index).collect();
         Lights { lamps, by_source, beyond }
@@ -193,12 +206,12 @@ impl Lights {
             .iter()
             .map(|&index| &self.lamps[index as usize])
             .filter(move |lamp| lamp.is_seen_beyond(direction))
-            .map(|lamp| (lamp.source, lamp.radiance))
+            .map(move |lamp| (lamp.source, lamp.beyond(direction)))
     }
 
     /// The greatest channel of any light's radiance; of a point its intensity.
     pub fn peak(&self) -> f64 {
-        self.lamps.iter().map(|lamp| lamp.radiance.max_element()).fold(0.0, f64::max)
+        self.lamps.iter().map(|lamp| lamp.peak).fold(0.0, f64::max)
     }
 
     fn chance(&self, lamp: &Lamp, receiver: &Receiver, total: f64) -> f64 {
@@ -212,7 +225,7 @@ impl Lights {
 }
 
 impl Lamp {
-    fn from_light(source: Source, light: &Light) -> Lamp {
+    fn from_light(scene: &Scene, source: Source, light: &Light) -> Lamp {
         let (radiance, kind) = match *light {
             Light::Point { position, intensity } => (intensity, Kind::Point { position }),
             Light::Spot { position, direction, intensity, inner, outer } => {
@@ -227,17 +240,26 @@ impl Lamp {
                 let radiance = if sine > 0.0 { irradiance / (PI * sine * sine) } else { irradiance };
                 (radiance, Kind::Sun { direction, sine })
             }
-            Light::Sky { radiance } => (radiance, Kind::Sky),
+            Light::Sky { radiance, panorama: None } => (radiance, Kind::Sky),
+            Light::Sky { radiance, panorama: Some(panorama) } => {
+                (radiance, Kind::Panorama(Box::new(Sky::new(scene, &panorama))))
+            }
         };
-        Lamp { source, radiance, kind }
+        let (mean, peak) = match &kind {
+            Kind::Panorama(sky) => (sky.mean(), sky.peak()),
+            _ => (Rgb::ONE, 1.0),
+        };
+        let (strength, peak) = (luminance(radiance * mean), radiance.max_element() * peak);
+        Lamp { source, radiance, strength, peak, kind }
     }
 
-    fn from_surface(id: PrimitiveId, shape: &Shape, radiance: Rgb) -> Option<Lamp> {
+    fn from_surface(id: PrimitiveId, shape: &Shape, radiance: Rgb, mean: Rgb, peak: Rgb) -> Option<Lamp> {
         let kind = match shape {
             Shape::Sphere { center, radius } => Kind::Sphere { id, center: *center, radius: *radius },
             shape => Kind::Surface(Box::new(Glowing::new(id, shape)?)),
         };
-        Some(Lamp { source: Source::Primitive(id), radiance, kind })
+        let (source, strength, peak) = (Source::Primitive(id), luminance(mean), peak.max_element());
+        Some(Lamp { source, radiance, strength, peak, kind })
     }
 
     /// What it is.
@@ -248,7 +270,7 @@ impl Lamp {
     /// About the irradiance at a receiver, were nothing in between. Only ratios matter, and they need not be
     /// right, but it is the same each time it is asked.
     fn estimate(&self, receiver: &Receiver) -> f64 {
-        let strength = luminance(self.radiance);
+        let strength = self.strength;
         let estimate = match &self.kind {
             Kind::Point { position } => {
                 let to = *position - receiver.p;
@@ -265,7 +287,7 @@ impl Lamp {
                 let solid_angle = if *sine > 0.0 { PI * sine * sine } else { 1.0 };
                 strength * solid_angle * cosine_bound(receiver, *direction, *sine)
             }
-            Kind::Sky => strength * PI,
+            Kind::Sky | Kind::Panorama(_) => strength * PI,
             Kind::Sphere { center, radius, .. } => {
                 let to = *center - receiver.p;
                 let squared = to.length_squared();
@@ -295,7 +317,7 @@ impl Lamp {
         let beyond = |wi: DVec3, pdf: f64| LightSample {
             wi,
             distance: f64::INFINITY,
-            radiance: self.radiance,
+            radiance: self.beyond(wi),
             pdf,
             delta: false,
             target: None,
@@ -329,6 +351,10 @@ impl Lamp {
                 }
                 None => beyond(warp::sphere(u), warp::SPHERE_PDF),
             }),
+            Kind::Panorama(sky) => {
+                let (wi, pdf) = sky.sample(u);
+                (pdf > 0.0).then(|| beyond(wi, pdf))
+            }
             Kind::Sphere { id, center, radius } => {
                 let to = *center - receiver.p;
                 let d = to.length();
@@ -343,7 +369,9 @@ impl Lamp {
                 let half_chord = (radius * radius - d * d * sine_squared).max(0.0).sqrt();
                 let distance = (d - radius) * (d + radius) / (d * local.z + half_chord);
                 let place = Place { primitive: *id, face: Face::Side };
-                let target = Target { p: receiver.p + distance * wi, place, hides_itself: false };
+                let p = receiver.p + distance * wi;
+                let point = SurfacePoint { p, n: (p - *center) / *radius };
+                let target = Target { point, place, hides_itself: false };
                 Some(LightSample {
                     wi,
                     distance,
@@ -363,6 +391,7 @@ impl Lamp {
             Kind::Point { .. } | Kind::Spot { .. } => 0.0,
             Kind::Sun { sine, .. } if *sine == 0.0 => 0.0,
             Kind::Sun { sine, .. } => warp::cone_pdf(cone_height(*sine)),
+            Kind::Panorama(sky) => sky.pdf(wi),
             Kind::Sky => receiver.n.map_or(warp::SPHERE_PDF, |n| warp::cosine_pdf(n.dot(wi))),
             Kind::Sphere { center, radius, .. } => {
                 let sine = radius / center.distance(receiver.p);
@@ -374,9 +403,17 @@ impl Lamp {
         }
     }
 
+    /// The radiance of what is seen in a direction beyond the scene.
+    fn beyond(&self, w: DVec3) -> Rgb {
+        match &self.kind {
+            Kind::Panorama(sky) => self.radiance * sky.seen(w),
+            _ => self.radiance,
+        }
+    }
+
     fn is_seen_beyond(&self, w: DVec3) -> bool {
         match &self.kind {
-            Kind::Sky => true,
+            Kind::Sky | Kind::Panorama(_) => true,
             // By the sine, which is exact for a small disc.
             Kind::Sun { direction, sine } => {
                 *sine > 0.0 && direction.dot(w) > 0.0 && direction.cross(w).length_squared() <= sine * sine

@@ -60,6 +60,10 @@ pub enum FieldType {
     Bool,
     /// A linear colour.
     Color,
+    /// A linear colour, or a texture.
+    Paint,
+    /// A text.
+    Text,
     /// So many quantities of one dimension.
     Tuple(usize, Dim),
     /// So many whole numbers.

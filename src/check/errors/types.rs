@@ -53,7 +53,7 @@ fn mismatch_code(wanted: FieldType, ty: Type) -> Code {
             let codes = types.iter().map(|wanted| mismatch_code(*wanted, ty));
             codes.filter(|code| *code != Code::E0201).min().unwrap_or(Code::E0201)
         }
-        (FieldType::Color, Type::Scalar(_) | Type::Tuple(3, _)) => Code::E0205,
+        (FieldType::Color | FieldType::Paint, Type::Scalar(_) | Type::Tuple(3, _)) => Code::E0205,
         (FieldType::Int, Type::Scalar(e)) | (FieldType::IntTuple(2), Type::Tuple(2, e))
             if e.fits(units::NONE) =>
         {

@@ -75,7 +75,7 @@ impl Glowing {
             radiance,
             pdf,
             delta: false,
-            target: Some(Target { p, place, hides_itself }),
+            target: Some(Target { point: SurfacePoint { p, n }, place, hides_itself }),
         })
     }
 

@@ -93,7 +93,7 @@ fn a_bubble_reflects_like_a_gap() {
     let things = [(sphere(DVec3::ZERO, 2.0), glass(1.5)), (sphere(DVec3::ZERO, 1.0), glass(1.0))];
     let mut scene = seen_from_front(&things).with(
         Shape::Plane { point: v(0.0, 0.0, -5.0), normal: DVec3::Z },
-        Material::Diffuse { color: Rgb::ZERO },
+        Material::Diffuse { color: Rgb::ZERO.into() },
     );
     scene.camera.half_extent = DVec2::splat(1e-7);
     assert_shows(&scene, 200_000, 1.0 - through, 1e-6);

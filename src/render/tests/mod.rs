@@ -27,6 +27,9 @@ fn scene(from: DVec3, look: DVec3) -> Scene {
     Scene {
         primitives: Vec::new(),
         materials: Vec::new(),
+        textures: Vec::new(),
+        images: Vec::new(),
+        frames: Vec::new(),
         lights: Vec::new(),
         camera: Camera {
             projection: Projection::Perspective,
@@ -56,6 +59,7 @@ impl Scene {
         self.primitives.push(Primitive {
             shape,
             material: MaterialId(self.materials.len() as u32),
+            frame: None,
             origin: OriginId(0),
         });
         self.materials.push(material);
@@ -68,7 +72,7 @@ impl Scene {
     }
 
     fn with_sky(self, radiance: f64) -> Scene {
-        self.with_light(Light::Sky { radiance: Rgb::splat(radiance) })
+        self.with_light(Light::Sky { radiance: Rgb::splat(radiance), panorama: None })
     }
 
     fn bounces(mut self, bounces: u32) -> Scene {
@@ -100,11 +104,11 @@ fn placed(matrix: DMat3, at: DVec3) -> Box<Placed> {
 }
 
 fn white() -> Material {
-    Material::Diffuse { color: Rgb::ONE }
+    Material::Diffuse { color: Rgb::ONE.into() }
 }
 
 fn glow(radiance: f64) -> Material {
-    Material::Emitter { radiance: Rgb::splat(radiance) }
+    Material::Emitter { radiance: Rgb::splat(radiance), pattern: None }
 }
 
 fn glass(ior: f64) -> Material {

@@ -80,7 +80,7 @@ fn drawn(shape: &Shape, random: &mut Random, count: usize) -> Vec<DVec3> {
     let mut draw = || {
         let receiver = Receiver { p: 20.0 * random.direction(), n: None };
         let (lamp, _, part) = lights.choose(&receiver, 0.0, random.next());
-        Some(lamp.sample(&receiver, part, random.pair())?.target?.p)
+        Some(lamp.sample(&receiver, part, random.pair())?.target?.point.p)
     };
     (0..count).filter_map(|_| draw()).collect()
 }

@@ -1,0 +1,5 @@
+//! The bytes of files to values: bounded in time and memory, whatever the bytes.
+
+pub mod image;
+
+pub use image::Image;
