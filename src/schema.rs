@@ -349,6 +349,18 @@ kinds! {
         SIZE "size": Point = Required, POSITIVE;
     }
 
+    /// Triangles from a PLY or OBJ file. A mesh is closed, and may be of glass, if each edge is shared by two triangles
+    /// that are oriented alike; else it is an open surface.
+    Shape mesh "mesh" {
+        /// Path of the file, as seen from the folder of this one.
+        FILE "file": Text = Required, ANY;
+        /// What a length of 1 in the file is.
+        UNIT "unit": Length = Value("1m"), POSITIVE;
+        /// Whether it is shaded as if it were round: by the file's normals, or else by means of those of neighbouring
+        /// triangles.
+        SMOOTH "smooth": Bool = Value("true"), ANY;
+    }
+
     /// An endless plane through its origin. The solid half-space lies behind the normal.
     Shape plane "plane" {
         /// Out of the ground. Need not be of length 1.

@@ -3,6 +3,7 @@
 use crate::folder::Folder;
 use rt_lang::compile;
 use rt_lang::lower::Overrides;
+use rt_lang::math::cos;
 use rt_lang::scene::{Light, Projection, Scene};
 use rt_lang::source::{Source, Sources};
 use std::f64::consts::PI;
@@ -13,7 +14,7 @@ fn scene(text: &str) -> Scene {
     let mut sources = Sources::default();
     let id = sources.add(Source::new("scene.rt", text));
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases/pictures");
-    let compiled = compile(&sources, id, &Overrides::default(), &Folder(&folder));
+    let compiled = compile(&sources, id, &Overrides::default(), &Folder(folder));
     compiled.scene.unwrap_or_else(|| panic!("{text}: {:#?}", compiled.diagnostics))
 }
 
@@ -29,8 +30,8 @@ fn the_power_of_a_spot_is_what_leaves_its_cone() {
         assert_eq!(direction.to_array(), [0.0, 0.0, -1.0]);
         // The integral of the falloff, in a thousand rings.
         let falloff = |c: f64| {
-            let x = ((c - outer.cos()) / (inner.cos() - outer.cos())).clamp(0.0, 1.0);
-            if c >= inner.cos() { 1.0 } else { x * x * (3.0 - 2.0 * x) }
+            let x = ((c - cos(outer)) / (cos(inner) - cos(outer))).clamp(0.0, 1.0);
+            if c >= cos(inner) { 1.0 } else { x * x * (3.0 - 2.0 * x) }
         };
         let rings = (0..100_000).map(|i| 1.0 - 2.0 * (f64::from(i) + 0.5) / 100_000.0);
         let flux: f64 = rings.map(|c| 2.0 * PI * intensity.x * falloff(c) * 2.0 / 100_000.0).sum();

@@ -109,6 +109,18 @@ pub(super) fn no_picture(written: &str, why: &str, span: Span) -> Diagnostic {
         .help("a picture is an opaque PNG, JPEG, WebP, HDR or EXR")
 }
 
+pub(super) fn no_mesh(written: &str, why: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0501, format!("`{written}` {why}"), span)
+        .at("not usable as a mesh")
+        .help("a mesh is a PLY or OBJ file with faces")
+}
+
+pub(super) fn too_many_triangles(most: usize, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0406, format!("the meshes have more than {most} triangles together"), span)
+        .at("one too many")
+        .help("simplify the mesh; copies of one file count once")
+}
+
 pub(super) fn too_many_texels(most: u64, span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0406, format!("the pictures have more than {most} pixels together"), span)
         .at("one too many")

@@ -4,6 +4,7 @@
 mod camera;
 mod errors;
 mod material;
+mod mesh;
 mod shape;
 mod sky;
 mod texture;
@@ -20,6 +21,7 @@ use crate::scene::{
 use crate::schema::{self, Category, DEFAULT_SAMPLES, light, render, sun};
 use crate::span::Span;
 use material::Materials;
+use mesh::Meshes;
 use texture::Textures;
 
 /// The most pixels a picture may have.
@@ -74,6 +76,7 @@ pub fn lower(things: &Things, overrides: &Overrides, files: &dyn Files) -> Lower
         primitives: vec![],
         materials: Materials::default(),
         textures: Textures::new(files),
+        meshes: Meshes::new(files),
         frames: vec![],
         lights: vec![],
         extents: vec![Extent::Nowhere; things.things.len()],
@@ -116,6 +119,7 @@ struct Lowering<'a> {
     primitives: Vec<Primitive>,
     materials: Materials,
     textures: Textures<'a>,
+    meshes: Meshes<'a>,
     frames: Vec<DAffine3>,
     lights: Vec<Light>,
     /// By thing.
@@ -211,7 +215,11 @@ impl<'a> Lowering<'a> {
     }
 
     fn surface(&mut self, index: usize, thing: &Thing) {
-        let shape = match shape::lower(self.things, thing) {
+        let lowered = match thing.made.kind {
+            schema::mesh::KIND => self.meshes.lower(self.things, thing),
+            _ => shape::lower(self.things, thing),
+        };
+        let shape = match lowered {
             Ok(shape) => shape,
             Err(diagnostic) => return self.report(self.used_at(thing, *diagnostic)),
         };

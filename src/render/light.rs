@@ -370,7 +370,7 @@ impl Lamp {
                 let distance = (d - radius) * (d + radius) / (d * local.z + half_chord);
                 let place = Place { primitive: *id, face: Face::Side };
                 let p = receiver.p + distance * wi;
-                let point = SurfacePoint { p, n: (p - *center) / *radius };
+                let point = SurfacePoint::new(p, (p - *center) / *radius);
                 let target = Target { point, place, hides_itself: false };
                 Some(LightSample {
                     wi,

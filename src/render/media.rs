@@ -10,6 +10,7 @@
 
 use crate::color::Rgb;
 use crate::math::exp;
+use crate::render::accel::Accel;
 use crate::render::shape::Ray;
 use crate::scene::nesting::lies_in;
 use crate::scene::shape::Bounds;
@@ -51,11 +52,11 @@ impl<'s> Dielectrics<'s> {
     }
 
     /// Sets `inside` to the solids around the start of a camera ray.
-    pub fn enter_at(&self, ray: &Ray, inside: &mut Inside) {
+    pub fn enter_at(&self, accel: &Accel, ray: &Ray, inside: &mut Inside) {
         inside.solids.clear();
         inside.medium = None;
         for &id in &self.near_camera {
-            if self.shape(id).contains(ray.origin) {
+            if accel.contains(id, ray.origin) {
                 self.cross(inside, id, true);
             }
         }

@@ -7,7 +7,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`shape`] | where a ray meets a surface, without epsilons |
-//! | `accel` | which surface it meets first |
+//! | `accel`, `bvh` | which surface it meets first |
 //! | `camera`, [`sampler`], `warp` | rays of camera paths; random numbers; directions drawn from them |
 //! | [`texture`] | what colour they have at a point |
 //! | [`bsdf`] | how surfaces scatter light |
@@ -24,6 +24,7 @@
 
 mod accel;
 pub mod bsdf;
+mod bvh;
 mod camera;
 pub mod control;
 pub mod film;
@@ -86,7 +87,7 @@ pub struct Rendered {
 /// built, the film, and the picture that is made of it.
 pub fn memory(scene: &Scene) -> u64 {
     let surfaces = scene.primitives.len() as u64;
-    let surface = (size_of::<crate::scene::Primitive>() + accel::BYTES_A_SURFACE) as u64;
+    let surface = (size_of::<crate::scene::Primitive>() + bvh::BYTES_A_SURFACE) as u64;
     // A pass over the picture is held beside the sums that it is added to.
     let pixel = (2 * size_of::<Pixel>() + size_of::<Rgb>()) as u64;
     let [width, height] = scene.trace.size.map(u64::from);
@@ -298,8 +299,7 @@ impl<'s> Tracer<'s> {
     /// Whether a ray meets the surface that it starts on again, below a distance.
     fn meets(&self, ray: &Ray, distance: f64) -> bool {
         ray.start.is_some_and(|start| {
-            let shape = &self.scene.primitives[start.primitive.0 as usize].shape;
-            shape::intersect(shape, ray, Some(start.face)).is_some_and(|(t, _)| t < distance)
+            self.accel.intersect(start.primitive, ray, Some(start.face)).is_some_and(|(t, _)| t < distance)
         })
     }
 

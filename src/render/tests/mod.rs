@@ -6,6 +6,7 @@ mod cameras;
 mod determinism;
 mod glass;
 mod lights;
+mod meshes;
 mod numbers;
 mod reference;
 mod shapes;
