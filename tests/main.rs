@@ -10,3 +10,4 @@ mod folder;
 mod dump;
 mod parse;
 mod pictures;
+mod scenes;

@@ -1,5 +1,7 @@
 //! The bytes of files to values: bounded in time and memory, whatever the bytes.
 
 pub mod image;
+pub mod mesh;
 
 pub use image::Image;
+pub use mesh::Mesh;

@@ -14,7 +14,7 @@ use rt_lang::diagnostic::Diagnostic;
 use rt_lang::lower::Overrides;
 use rt_lang::output::{Depth, Facts, Format, Picture, encode};
 use rt_lang::render::{Cancelled, Control, Rendered, Shown, Tracer, Window};
-use rt_lang::scene::{self, Scene};
+use rt_lang::scene::{self, Background, Scene};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -165,7 +165,7 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
         return Ok(Exit::Diagnostics);
     };
     let window = window(scene, arguments.crop)?;
-    let staged = stage(job, window, context.interrupt)?;
+    let staged = stage(job, scene, window, context.interrupt)?;
     let Ok(traced) = trace(context, job, scene, window) else { context.interrupt.wait() };
     let facts = facts(scene, &traced);
     context.threads.install(|| write(&traced.picture, &facts, arguments.look.bits, staged))?;
@@ -268,10 +268,16 @@ fn window(scene: &Scene, crop: Option<[u32; 4]>) -> Result<Window, Problem> {
 }
 
 /// Makes sure before any work that every output can be written.
-fn stage(job: &Job, window: Window, interrupt: &Interrupt) -> Result<Vec<Staged>, Problem> {
+fn stage(job: &Job, scene: &Scene, window: Window, interrupt: &Interrupt) -> Result<Vec<Staged>, Problem> {
     for target in &job.targets {
         if let Some(reason) = target.format.refuses([window.width, window.height]) {
             return Err(Problem::new(reason.to_string()));
+        }
+        if scene.trace.background == Background::Transparent
+            && let Some(reason) = target.format.refuses_alpha()
+        {
+            let help = "write another format, or leave `background: transparent` out";
+            return Err(Problem::new(reason.to_string()).help(help));
         }
     }
     job.targets.iter().map(|target| target.stage(interrupt)).collect()
@@ -295,6 +301,10 @@ fn trace(context: &Context, job: &Job, scene: &Scene, window: Window) -> Result<
         let (offset, size) = ([window.x, window.y], [window.width, window.height]);
         let mean = |x, y| rendered.film.mean(x, y);
         let picture = Picture::gather(scene.trace.size, offset, size, mean);
+        let picture = match scene.trace.background {
+            Background::Sky => picture,
+            Background::Transparent => picture.with_alpha(|x, y| rendered.film.alpha(x, y)),
+        };
         let Rendered { samples, noise, target_met, .. } = rendered;
         Ok(Traced { picture, samples, noise, target_met, stops, fitting: chosen, cut: prepass.cut })
     })

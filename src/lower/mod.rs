@@ -4,15 +4,16 @@
 mod camera;
 mod errors;
 mod material;
+mod mesh;
 mod shape;
 mod sky;
 mod texture;
 
 use crate::color::Rgb;
 use crate::diagnostic::Diagnostic;
-use crate::eval::{Thing, ThingId, Things};
+use crate::eval::{Aim, Thing, ThingId, Things};
 use crate::files::Files;
-use crate::math::{DAffine3, DVec3};
+use crate::math::{DAffine3, DVec3, PI, sin};
 use crate::scene::shape::Bounds;
 use crate::scene::{
     Develop, FrameId, Light, Material, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace,
@@ -20,6 +21,7 @@ use crate::scene::{
 use crate::schema::{self, Category, DEFAULT_SAMPLES, light, render, sun};
 use crate::span::Span;
 use material::Materials;
+use mesh::Meshes;
 use texture::Textures;
 
 /// The most pixels a picture may have.
@@ -74,6 +76,7 @@ pub fn lower(things: &Things, overrides: &Overrides, files: &dyn Files) -> Lower
         primitives: vec![],
         materials: Materials::default(),
         textures: Textures::new(files),
+        meshes: Meshes::new(files),
         frames: vec![],
         lights: vec![],
         extents: vec![Extent::Nowhere; things.things.len()],
@@ -116,6 +119,7 @@ struct Lowering<'a> {
     primitives: Vec<Primitive>,
     materials: Materials,
     textures: Textures<'a>,
+    meshes: Meshes<'a>,
     frames: Vec<DAffine3>,
     lights: Vec<Light>,
     /// By thing.
@@ -153,6 +157,7 @@ impl<'a> Lowering<'a> {
 
     fn surfaces_and_lights(&mut self) {
         let mut sky_place = None;
+        let mut spots = vec![];
         for (index, thing) in self.things.things.iter().enumerate() {
             let sound =
                 thing.made.is_sound() && thing.material.as_ref().is_none_or(|given| given.value.is_sound());
@@ -171,16 +176,50 @@ impl<'a> Lowering<'a> {
                 self.surface(index, thing);
             } else if kind == light::KIND {
                 self.lamp(index, thing);
+                spots.extend(thing.made.given(light::AIM).map(|(aim, span)| (index, thing, aim, span)));
             } else if kind == sun::KIND {
                 self.sun(thing);
             } else if kind == schema::sky::KIND {
                 self.sky(thing);
             }
         }
+        for (index, thing, aim, span) in spots {
+            self.spot(index, thing, aim, span);
+        }
+    }
+
+    /// A lamp that shines into a cone, in the place that was found for it.
+    fn spot(&mut self, index: usize, thing: &Thing, aim: Aim, span: Span) {
+        let Extent::Lamp(Bounds { min: position, .. }) = self.extents[index] else { return };
+        let target = match aim {
+            Aim::Point(point) => Some(thing.world_from_object.transform_point3(point)),
+            Aim::Thing(_) => self.aim(aim, span),
+        };
+        let Some(target) = target else { return };
+        let Some(direction) = shape::unit(target - position) else {
+            return self.report(self.used_at(thing, errors::aimed_at_itself(span)));
+        };
+        let made = &thing.made;
+        let Some((cone, _)) = made.given(light::CONE) else { return };
+        let outer = 0.5 * cone;
+        let inner = (1.0 - self.things.read(made, light::SOFT)) * outer;
+        let power = self.things.read(made, light::COLOR) * self.things.read(made, light::POWER);
+        // Over the cosine the smooth step has the mean ½, so the flux is 2π(1 − (cos inner + cos outer) / 2) times
+        // the intensity. The half angles keep it exact for narrow cones.
+        let height = |angle: f64| {
+            let sine = sin(0.5 * angle);
+            2.0 * sine * sine
+        };
+        let intensity = power / (PI * (height(inner) + height(outer)));
+        self.add_light(thing, Light::Spot { position, direction, intensity, inner, outer });
     }
 
     fn surface(&mut self, index: usize, thing: &Thing) {
-        let shape = match shape::lower(self.things, thing) {
+        let lowered = match thing.made.kind {
+            schema::mesh::KIND => self.meshes.lower(self.things, thing),
+            _ => shape::lower(self.things, thing),
+        };
+        let shape = match lowered {
             Ok(shape) => shape,
             Err(diagnostic) => return self.report(self.used_at(thing, *diagnostic)),
         };
@@ -219,8 +258,12 @@ impl<'a> Lowering<'a> {
             return self.report(self.used_at(thing, errors::not_finite_place(made.span)));
         }
         self.extents[index] = Extent::Lamp(Bounds { min: position, max: position });
+        if made.given(light::AIM).is_some() {
+            // What it is aimed at may be found only later.
+            return;
+        }
         if radius == 0.0 {
-            let intensity = power / (4.0 * crate::math::PI);
+            let intensity = power / (4.0 * PI);
             return self.add_light(thing, Light::Point { position, intensity });
         }
         let placement = thing.world_from_object * crate::math::DAffine3::from_translation(at);
@@ -229,7 +272,7 @@ impl<'a> Lowering<'a> {
                 if let Some(bounds) = shape.bounds() {
                     self.extents[index] = Extent::Lamp(bounds);
                 }
-                let radiance = power / (crate::math::PI * shape.area());
+                let radiance = power / (PI * shape.area());
                 if !radiance.is_finite() {
                     return self.report(self.used_at(thing, errors::glows_beyond(made.span)));
                 }
@@ -253,7 +296,7 @@ impl<'a> Lowering<'a> {
 
     fn add_light(&mut self, thing: &Thing, light: Light) {
         let finite = match light {
-            Light::Point { intensity, .. } => intensity.is_finite(),
+            Light::Point { intensity, .. } | Light::Spot { intensity, .. } => intensity.is_finite(),
             Light::Sun { irradiance, .. } => irradiance.is_finite(),
             Light::Sky { radiance, .. } => radiance.is_finite(),
         };
@@ -361,6 +404,7 @@ impl<'a> Lowering<'a> {
             indirect: self.things.read(&made, render::INDIRECT),
             seed: self.overrides.seed.unwrap_or(self.things.read(&made, render::SEED) as u64),
             filter: self.things.read(&made, render::FILTER),
+            background: self.things.read(&made, render::BACKGROUND),
         };
         let tonemap = self.overrides.tonemap.unwrap_or_else(|| self.things.read(&made, render::TONEMAP));
         (trace, tonemap)

@@ -66,7 +66,7 @@ fn look(tracer: &Tracer, cell: u32) -> (Rgb, f64) {
             let [u, v] = sampler.pair(super::sampler::Pair::Film);
             let place = DVec2::new(f64::from(x) + u, f64::from(y) + v) / f64::from(CELLS);
             let ray = tracer.eye.through(2.0 * place - 1.0, &sampler);
-            integrator::radiance(tracer, ray, &sampler, &mut scratch, &mut cut)
+            integrator::trace(tracer, ray, &sampler, &mut scratch, &mut cut).radiance
         })
         .sum();
     (sum / f64::from(PATHS), cut.0)

@@ -1,7 +1,7 @@
 //! Colour by place: what a texture shows at a point of a surface.
 
 use super::sampler::mix;
-use super::shape::{Face, SurfacePoint};
+use super::shape::{Face, SurfacePoint, mesh_uv};
 use crate::asset::Image;
 use crate::color::Rgb;
 use crate::math::{DVec2, DVec3, PI, atan2};
@@ -60,8 +60,17 @@ impl<'s> Spot<'s> {
     fn place(&self, size: DVec2) -> Place {
         match (&self.primitive.shape, self.face) {
             (Shape::Sphere { .. }, _) => globe(self.o),
+            (Shape::Mesh(instance), face) => match (face, &self.point.p) {
+                (Face::Triangle(triangle), p) => match mesh_uv(instance, triangle, *p) {
+                    Some(uv) => Place { uv, repeats_up: true },
+                    None => flat(self.o, self.n, size),
+                },
+                _ => flat(self.o, self.n, size),
+            },
             (Shape::Plane { .. } | Shape::Disk(_) | Shape::Box(_), _)
-            | (Shape::Quadric(_), Face::Low | Face::High | Face::Wall(_)) => flat(self.o, self.n, size),
+            | (Shape::Quadric(_), Face::Low | Face::High | Face::Wall(_) | Face::Triangle(_)) => {
+                flat(self.o, self.n, size)
+            }
             (Shape::Quadric(quadric), Face::Side) => {
                 let canonical = quadric.object_from_world.transform_point3(self.point.p);
                 match quadric.form {
