@@ -9,9 +9,8 @@
 //! this order. Then A wins over B, B over C, and C over A. So the medium is chosen for each set of solids anew.
 
 use crate::color::Rgb;
-use crate::math::exp;
-use crate::render::accel::Accel;
-use crate::render::shape::Ray;
+use crate::math::DVec3;
+use crate::render::exact::Exact;
 use crate::scene::nesting::lies_in;
 use crate::scene::shape::Bounds;
 use crate::scene::{Material, PrimitiveId, Projection, Scene, Shape};
@@ -23,6 +22,9 @@ pub struct Dielectrics<'s> {
     near_camera: Vec<PrimitiveId>,
     /// Whether any has the index of vacuum, so that its boundary does nothing even outside of all others.
     any_invisible: bool,
+    /// Whether any absorbs light.
+    any_absorbing: bool,
+    is_empty: bool,
 }
 
 /// What a boundary does to a path that meets it.
@@ -41,22 +43,48 @@ pub struct Inside {
     medium: Option<PrimitiveId>,
 }
 
+impl Inside {
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.solids.is_empty()
+    }
+}
+
 impl<'s> Dielectrics<'s> {
     /// Finds those of a scene.
     pub fn new(scene: &'s Scene) -> Dielectrics<'s> {
         let ids = (0..scene.primitives.len() as u32).map(PrimitiveId);
         let solids: Vec<PrimitiveId> = ids.filter(|&id| ior(scene, id).is_some()).collect();
         let any_invisible = solids.iter().any(|&id| ior(scene, id) == Some(1.0));
+        let any_absorbing = scene.materials.iter().any(
+            |material| matches!(material, Material::Dielectric { absorption, .. } if *absorption != Rgb::ZERO),
+        );
+        let is_empty = solids.is_empty();
         let near_camera = solids.into_iter().filter(|&id| may_reach_lens(scene, id)).collect();
-        Dielectrics { scene, near_camera, any_invisible }
+        Dielectrics { scene, near_camera, any_invisible, any_absorbing, is_empty }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.is_empty
+    }
+
+    /// Whether any has the index of vacuum, so that its boundary does nothing even outside of all others.
+    pub fn any_invisible(&self) -> bool {
+        self.any_invisible
+    }
+
+    /// Whether any absorbs light.
+    pub fn any_absorbing(&self) -> bool {
+        self.any_absorbing
     }
 
     /// Sets `inside` to the solids around the start of a camera ray.
-    pub fn enter_at(&self, accel: &Accel, ray: &Ray, inside: &mut Inside) {
+    pub fn enter_at(&self, exact: &Exact, start: DVec3, inside: &mut Inside) {
         inside.solids.clear();
         inside.medium = None;
         for &id in &self.near_camera {
-            if accel.contains(id, ray.origin) {
+            if exact.contains(id, start) {
                 self.cross(inside, id, true);
             }
         }
@@ -92,18 +120,13 @@ impl<'s> Dielectrics<'s> {
         inside.medium = self.medium(|| inside.solids.iter().copied());
     }
 
-    /// The share of light that is left after a distance in the medium (Beer and Lambert).
-    pub fn transmission(&self, inside: &Inside, distance: f64) -> Rgb {
+    /// What the medium absorbs, per metre and channel (Beer and Lambert).
+    pub fn absorption(&self, inside: &Inside) -> Rgb {
         let medium = inside.medium.map(|id| self.scene.material(&self.scene.primitives[id.0 as usize]));
-        let Some(Material::Dielectric { absorption, .. }) = medium else { return Rgb::ONE };
-        // Neither a clear medium without end nor an opaque one without depth is 0 × ∞.
-        let channel = |sigma: f64| if sigma == 0.0 || distance == 0.0 { 1.0 } else { exp(-sigma * distance) };
-        Rgb::new(channel(absorption.x), channel(absorption.y), channel(absorption.z))
-    }
-
-    /// Whether a straight line may cross a boundary that does nothing.
-    pub fn may_pass(&self, inside: &Inside) -> bool {
-        self.any_invisible || !inside.solids.is_empty()
+        match medium {
+            Some(Material::Dielectric { absorption, .. }) => *absorption,
+            _ => Rgb::ZERO,
+        }
     }
 
     /// Which of the solids around a point is the medium there.

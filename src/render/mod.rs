@@ -6,68 +6,87 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`shape`] | where a ray meets a surface, without epsilons |
-//! | `accel`, `bvh` | which surface it meets first |
+//! | [`lanes`], [`level`] | several paths at once on whatever vector instructions there are |
+//! | `vector`, `functions`, `space` | vectors, polynomials, and the coordinates of the tracer |
+//! | [`shape`], [`exact`] | where rays meet surfaces, without epsilons: in lanes, or one by one in double precision |
+//! | `surfaces`, `accel` | which surface they meet first |
 //! | `camera`, [`sampler`], `warp` | rays of camera paths; random numbers; directions drawn from them |
-//! | [`texture`] | what colour they have at a point |
-//! | [`bsdf`] | how surfaces scatter light |
+//! | [`bsdf`], `materials`, `texture` | how surfaces scatter light, and their colour by place |
 //! | [`light`] | where light comes from |
 //! | [`media`] | which dielectric a path is inside of |
-//! | `integrator` | one path: the contract of any faster one |
+//! | `path`, `queue` | paths, step by step, and those that wait for a lane |
 //! | [`observer`] | watching paths |
 //! | [`film`] | exact sums |
 //! | `prepass` | exposure and the film's scale |
 //! | [`control`] | cancelling and progress |
 //!
-//! The same scene gives the same bits for any number of threads, and a window the same bits as that part of the
+//! Set-up is done in double precision in the world; paths are traced in single precision, see [`shape`] for why that is
+//! enough. `tests/oracle` holds an integrator that shares none of this, in double precision, to compare with.
+//!
+//! The same scene gives the same bits on every processor, for any number of lanes and threads, and a window the same bits as that part of the
 //! whole: random numbers are a function of pixel and sample, and sums are exact.
 
 mod accel;
 pub mod bsdf;
-mod bvh;
 mod camera;
 pub mod control;
+pub mod exact;
 pub mod film;
-mod integrator;
+mod functions;
+pub mod lanes;
+pub mod level;
 pub mod light;
+mod materials;
 pub mod media;
 pub mod observer;
+mod path;
 mod prepass;
+mod queue;
 pub mod sampler;
 pub mod shape;
-pub mod texture;
+mod space;
+mod surfaces;
 #[cfg(test)]
 mod tests;
+pub mod texture;
+mod vector;
 mod warp;
 
 use crate::color::Rgb;
-use crate::scene::{Material, Paint, Scene, Target, Tonemap};
-use accel::Accel;
-use bsdf::{Bsdf, Coat};
+use crate::math::{DVec3, exp2, ln};
+use crate::scene::{Light, Material, Paint, PrimitiveId, Scene, Shape, Target, Tonemap};
 use camera::Eye;
 pub use control::{Cancelled, Control, Progress};
+use exact::SurfacePoint;
 pub use film::{Film, Window};
 use film::{MOST_SAMPLES, Pixel};
-use integrator::{Arrived, Scratch, Sharing};
+use lanes::{Lanes, One, Word};
+pub use level::Level;
 use light::Lights;
-use media::{Boundary, Dielectrics, Inside};
+use materials::Materials;
+use media::Dielectrics;
 pub use observer::Observer;
+use path::Sharing;
 pub use prepass::Prepass;
+use queue::{Arrived, Job, Jobs, View};
 use rayon::prelude::*;
-use sampler::Sampler;
-use shape::{Place, Ray, SurfacePoint};
+use shape::{Face, Hits, decode, slot};
+use space::Space;
+use surfaces::Surfaces;
 
 /// A scene, ready to be traced.
 pub struct Tracer<'s> {
     scene: &'s Scene,
-    accel: Accel<'s>,
-    eye: Eye<'s>,
+    space: Space,
+    /// Radiance in a unit of the tracer's, a power of two.
+    unit: f64,
+    surfaces: Surfaces<'s>,
+    materials: Materials,
     lights: Lights,
     dielectrics: Dielectrics<'s>,
-    /// Coats of plastics, and for each material which one it has.
-    coats: Vec<Coat>,
-    coat_of: Vec<usize>,
+    eye: Eye,
     sharing: Sharing,
+    level: Level,
 }
 
 /// A finished film.
@@ -87,7 +106,8 @@ pub struct Rendered {
 /// built, the film, and the picture that is made of it.
 pub fn memory(scene: &Scene) -> u64 {
     let surfaces = scene.primitives.len() as u64;
-    let surface = (size_of::<crate::scene::Primitive>() + bvh::BYTES_A_SURFACE) as u64;
+    let surface =
+        (size_of::<crate::scene::Primitive>() + accel::BYTES_A_SURFACE + surfaces::BYTES_A_SURFACE) as u64;
     // A pass over the picture is held beside the sums that it is added to.
     let pixel = (2 * size_of::<Pixel>() + size_of::<Rgb>()) as u64;
     let [width, height] = scene.trace.size.map(u64::from);
@@ -116,18 +136,27 @@ const PASS: u32 = 64;
 impl<'s> Tracer<'s> {
     /// Builds what tracing needs: hierarchy, tables of lights and coats.
     pub fn new(scene: &'s Scene) -> Tracer<'s> {
-        let mut coats: Vec<Coat> = Vec::new();
-        let coat_of = scene.materials.iter().map(|material| coat_index(&mut coats, material)).collect();
+        let space = Space::new(scene.camera.position, size(scene));
+        let unit = radiance_unit(peak(scene));
+        let surfaces = Surfaces::new(scene, &space);
         Tracer {
             scene,
-            accel: Accel::new(&scene.primitives),
-            eye: Eye::new(scene),
-            lights: Lights::new(scene),
+            materials: Materials::new(scene, &surfaces, unit),
+            lights: Lights::new(scene, &surfaces, &space, unit),
+            surfaces,
+            eye: Eye::new(scene, &space),
+            space,
+            unit,
             dielectrics: Dielectrics::new(scene),
-            coats,
-            coat_of,
             sharing: Sharing::Both,
+            level: Level::best(),
         }
+    }
+
+    /// Traces on certain vector instructions, or if the processor has them not on the best it has below. The picture is
+    /// the same.
+    pub fn on(self, level: Level) -> Tracer<'s> {
+        Tracer { level, ..self }
     }
 
     /// Takes a first look, for exposure and the film's scale.
@@ -183,144 +212,199 @@ impl<'s> Tracer<'s> {
         let tiles: Vec<Window> = film.window().tiles(TILE).collect();
         let scale = film.scale();
         control.plan(film.window().pixels() as u64 * u64::from(samples.end - samples.start));
+        let view = View::new(&self.eye, self.scene.trace.seed);
         for start in samples.clone().step_by(PASS as usize) {
             let pass = start..samples.end.min(start + PASS);
-            let traced: Result<Vec<Vec<Pixel>>, Cancelled> = tiles
+            let traced: Vec<Vec<Pixel>> = tiles
                 .par_iter()
-                .map(|tile| self.trace_tile(*tile, pass.clone(), scale, control, &mut ()))
+                .map(|tile| {
+                    let mut jobs = Tile::new(*tile, pass.clone(), scale, self.unit, control);
+                    self.trace(&view, &mut jobs);
+                    jobs.pixels
+                })
                 .collect();
-            for (tile, pixels) in tiles.iter().zip(traced?) {
+            if control.is_cancelled() {
+                return Err(Cancelled);
+            }
+            for (tile, pixels) in tiles.iter().zip(traced) {
                 film.merge_pixels(*tile, &pixels);
             }
         }
         Ok(())
     }
 
-    /// The radiance that one sample adds to its pixel, watched.
+    /// The radiance that one sample adds to its pixel, watched. Traced in one lane, to the same bits as in many.
     pub fn sample<O: Observer>(&self, x: u32, y: u32, sample: u32, observer: &mut O) -> Rgb {
-        let (arrived, weight) = self.trace_sample(x, y, sample, &mut Scratch::default(), observer);
-        weight * arrived.radiance
+        let mut single = Single { job: Some(Job { x, y, sample, pixel: 0 }), radiance: Rgb::ZERO };
+        let view = View::new(&self.eye, self.scene.trace.seed);
+        path::trace(One, self, &view, &mut single, observer);
+        single.radiance * self.unit
     }
 
-    fn trace_tile<O: Observer>(
-        &self,
-        tile: Window,
-        samples: std::ops::Range<u32>,
-        scale: f64,
-        control: &Control,
-        observer: &mut O,
-    ) -> Result<Vec<Pixel>, Cancelled> {
-        let mut pixels = Vec::with_capacity(tile.pixels());
-        let mut scratch = Scratch::default();
-        for y in tile.y..tile.y + tile.height {
-            for x in tile.x..tile.x + tile.width {
-                let mut pixel = Pixel::default();
-                for sample in samples.clone() {
-                    if control.is_cancelled() {
-                        return Err(Cancelled);
-                    }
-                    let (arrived, weight) = self.trace_sample(x, y, sample, &mut scratch, observer);
-                    pixel.add(weight * arrived.radiance, scale);
-                    pixel.cover(arrived.open, weight);
-                }
-                pixels.push(pixel);
+    /// Traces paths on the tracer's level.
+    fn trace(&self, view: &View, jobs: &mut dyn Jobs) {
+        self.level.run(Trace { tracer: self, view, jobs });
+    }
+
+    /// The colour that the texture of what was met shows at a point of it.
+    fn painted(&self, hit: &Hits<One>, p: DVec3, n: DVec3) -> [f32; 3] {
+        let place = hit.place.get(0);
+        let id = self.surfaces.primitive(slot(place));
+        self.pattern(id, decode(place, hit.detail.get(0)), &SurfacePoint::new(p, n))
+    }
+
+    /// The colour that the texture of a primitive shows at a point of it.
+    fn pattern(&self, id: PrimitiveId, face: Face, point: &SurfacePoint) -> [f32; 3] {
+        let primitive = &self.scene.primitives[id.0 as usize];
+        let Some(texture) = self.scene.material(primitive).texture() else { return [1.0; 3] };
+        let spot = texture::Spot::new(self.scene, primitive, face, point);
+        vector::single(texture::paint(self.scene, Paint::Texture(texture), &spot))
+    }
+
+    /// The point of a sphere next to one that lies on it but for rounding.
+    fn sphere_point(&self, id: PrimitiveId, near: DVec3) -> SurfacePoint {
+        match self.scene.primitives[id.0 as usize].shape {
+            Shape::Sphere { center, radius } => {
+                let n = (near - center).normalize();
+                SurfacePoint::new(center + radius * n, n)
             }
-            control.finish(u64::from(tile.width) * u64::from(samples.end - samples.start));
+            _ => SurfacePoint::new(near, DVec3::Y),
         }
-        Ok(pixels)
-    }
-
-    /// What a sample brings, and its weight in its pixel.
-    fn trace_sample<O: Observer>(
-        &self,
-        x: u32,
-        y: u32,
-        sample: u32,
-        scratch: &mut Scratch,
-        observer: &mut O,
-    ) -> (Arrived, f64) {
-        let trace = &self.scene.trace;
-        let sampler = Sampler::new(trace.seed, x, y, sample);
-        let (ray, weight) = self.eye.ray(x, y, trace.size, &sampler);
-        (integrator::trace(self, ray, &sampler, scratch, observer), weight)
-    }
-
-    /// What a surface does at a point, or none where it does nothing.
-    fn bsdf(
-        &self,
-        material: &Material,
-        place: Place,
-        point: &SurfacePoint,
-        inside: &Inside,
-        entering: bool,
-    ) -> Option<Bsdf<'_>> {
-        let paint = |paint: Paint| self.paint(paint, place, point);
-        Some(match *material {
-            Material::Diffuse { color } => Bsdf::Diffuse(paint(color)),
-            Material::Mirror { color } => Bsdf::Mirror(paint(color)),
-            Material::Dielectric { alpha, .. } => {
-                match self.dielectrics.boundary(inside, place.primitive, entering) {
-                    Boundary::Nothing => return None,
-                    Boundary::Interface(eta) => Bsdf::Dielectric { eta, alpha },
-                }
-            }
-            Material::Metal { color, alpha } => Bsdf::Metal { color: paint(color), alpha },
-            Material::Plastic { color, .. } => {
-                let id = self.scene.primitives[place.primitive.0 as usize].material;
-                Bsdf::Plastic { color: paint(color), coat: &self.coats[self.coat_of[id.0 as usize]] }
-            }
-            Material::Emitter { .. } => return None,
-        })
-    }
-
-    /// The colour of a paint at a point of a surface.
-    fn paint(&self, paint: Paint, place: Place, point: &SurfacePoint) -> Rgb {
-        match paint {
-            Paint::Plain(color) => color,
-            Paint::Texture(_) => {
-                let primitive = &self.scene.primitives[place.primitive.0 as usize];
-                let spot = texture::Spot::new(self.scene, primitive, place.face, point);
-                texture::paint(self.scene, paint, &spot)
-            }
-        }
-    }
-
-    /// What a surface radiates at a point, if it glows. Whether on this side is not asked.
-    fn glow(&self, place: Place, point: &SurfacePoint) -> Option<Rgb> {
-        match *self.scene.material(&self.scene.primitives[place.primitive.0 as usize]) {
-            Material::Emitter { radiance, pattern: None } => Some(radiance),
-            Material::Emitter { radiance, pattern: Some(id) } => {
-                Some(radiance * self.paint(Paint::Texture(id), place, point))
-            }
-            _ => None,
-        }
-    }
-
-    /// Whether a ray meets the surface that it starts on again, below a distance.
-    fn meets(&self, ray: &Ray, distance: f64) -> bool {
-        ray.start.is_some_and(|start| {
-            self.accel.intersect(start.primitive, ray, Some(start.face)).is_some_and(|(t, _)| t < distance)
-        })
     }
 
     /// The radiance of the brightest thing there is, in its brightest channel.
     fn peak(&self) -> f64 {
-        let glowing = self.scene.materials.iter().map(|material| match material {
-            Material::Emitter { radiance, pattern } => {
-                let share = pattern.map_or(Rgb::ONE, |id| self.scene.peak(Paint::Texture(id)));
-                (*radiance * share).max_element()
-            }
-            _ => 0.0,
-        });
-        glowing.chain([self.lights.peak()]).fold(0.0, f64::max)
+        peak(self.scene)
     }
 }
 
-/// The place of a material's coat among those that are made, made if need be; any for what is no plastic.
-fn coat_index(coats: &mut Vec<Coat>, material: &Material) -> usize {
-    let Material::Plastic { ior, alpha, .. } = *material else { return usize::MAX };
-    coats.iter().position(|coat| coat.is(ior, alpha)).unwrap_or_else(|| {
-        coats.push(Coat::new(ior, alpha));
-        coats.len() - 1
-    })
+/// Paths to trace in lanes.
+struct Trace<'a, 's> {
+    tracer: &'a Tracer<'s>,
+    view: &'a View<'a>,
+    jobs: &'a mut dyn Jobs,
+}
+
+impl level::Task for Trace<'_, '_> {
+    type Output = ();
+    fn run<L: Lanes>(self, l: L) {
+        path::trace(l, self.tracer, self.view, self.jobs, &mut ());
+    }
+}
+
+/// The paths of a tile, pixel by pixel.
+struct Tile<'a> {
+    window: Window,
+    samples: std::ops::Range<u32>,
+    /// Pixel and sample that come next.
+    next: (u32, u32),
+    scale: f64,
+    unit: f64,
+    pixels: Vec<Pixel>,
+    control: &'a Control,
+}
+
+impl Tile<'_> {
+    fn new(
+        window: Window,
+        samples: std::ops::Range<u32>,
+        scale: f64,
+        unit: f64,
+        control: &Control,
+    ) -> Tile<'_> {
+        let pixels = vec![Pixel::default(); window.pixels()];
+        Tile { window, next: (0, samples.start), samples, scale, unit, pixels, control }
+    }
+}
+
+impl Jobs for Tile<'_> {
+    fn next(&mut self) -> Option<Job> {
+        let (pixel, sample) = self.next;
+        if pixel as usize >= self.pixels.len() {
+            return None;
+        }
+        self.next.1 += 1;
+        if self.next.1 >= self.samples.end {
+            self.next = (pixel + 1, self.samples.start);
+            self.control.finish(u64::from(self.samples.end - self.samples.start));
+            if self.control.is_cancelled() {
+                self.next.0 = u32::MAX;
+            }
+        }
+        let (x, y) = (pixel % self.window.width, pixel / self.window.width);
+        Some(Job { x: self.window.x + x, y: self.window.y + y, sample, pixel })
+    }
+
+    fn finish(&mut self, arrived: &Arrived) {
+        let pixel = &mut self.pixels[arrived.pixel as usize];
+        let weight = f64::from(arrived.weight);
+        pixel.add(weight * self.unit * wide(arrived.radiance), self.scale);
+        pixel.cover(arrived.open, weight);
+    }
+}
+
+/// One path.
+struct Single {
+    job: Option<Job>,
+    radiance: Rgb,
+}
+
+impl Jobs for Single {
+    fn next(&mut self) -> Option<Job> {
+        self.job.take()
+    }
+
+    fn finish(&mut self, arrived: &Arrived) {
+        self.radiance = f64::from(arrived.weight) * wide(arrived.radiance);
+    }
+}
+
+fn wide([r, g, b]: [f32; 3]) -> Rgb {
+    Rgb::new(f64::from(r), f64::from(g), f64::from(b))
+}
+
+/// The radiance of the brightest thing there is, in its brightest channel; of a point its intensity.
+fn peak(scene: &Scene) -> f64 {
+    let glowing = scene.materials.iter().map(|material| match material {
+        Material::Emitter { radiance, pattern } => {
+            let share = pattern.map_or(Rgb::ONE, |id| scene.peak(Paint::Texture(id)));
+            (*radiance * share).max_element()
+        }
+        _ => 0.0,
+    });
+    let lights = scene.lights.iter().map(|light| match *light {
+        Light::Point { intensity, .. } | Light::Spot { intensity, .. } => intensity.max_element(),
+        Light::Sun { irradiance, radius, .. } => {
+            let sine = crate::math::sin(radius);
+            let disc = if sine > 0.0 { crate::math::PI * sine * sine } else { 1.0 };
+            irradiance.max_element() / disc
+        }
+        Light::Sky { radiance, panorama } => {
+            let share = panorama.map_or(1.0, |panorama| scene.images[panorama.image.0 as usize].peak());
+            radiance.max_element() * share
+        }
+    });
+    glowing.chain(lights).fold(0.0, f64::max)
+}
+
+/// The power of two next above the brightest, or 1 without light.
+fn radiance_unit(peak: f64) -> f64 {
+    if peak > 0.0 { exp2((ln(peak) / std::f64::consts::LN_2).ceil().clamp(-1000.0, 1000.0)) } else { 1.0 }
+}
+
+/// How far away things are from the camera, most typically.
+fn size(scene: &Scene) -> f64 {
+    let eye = scene.camera.position;
+    let distance = |shape: &Shape| match shape {
+        Shape::Sphere { center, radius } => (center.distance(eye) - radius).abs(),
+        Shape::Plane { point, normal } => normal.dot(*point - eye).abs(),
+        Shape::Quadric(quadric) => quadric.world_from_object.translation.distance(eye),
+        shape => shape.bounds().map_or(0.0, |bounds| bounds.center().distance(eye)),
+    };
+    let mut sizes: Vec<f64> = scene.primitives.iter().map(|primitive| distance(&primitive.shape)).collect();
+    if sizes.is_empty() {
+        return 1.0;
+    }
+    let middle = sizes.len() / 2;
+    *sizes.select_nth_unstable_by(middle, f64::total_cmp).1
 }

@@ -1,13 +1,17 @@
 //! Watching what paths do.
 
 use super::light::Source;
-use super::shape::Place;
+use super::shape::Face;
 use crate::color::Rgb;
 use crate::math::DVec3;
+use crate::scene::PrimitiveId;
 
 /// Told what a path does as it happens. The integrator is generic over it, so that the one that does nothing
 /// costs nothing.
 pub trait Observer {
+    /// Whether it wants to be told anything at all.
+    const WATCHES: bool = true;
+
     /// The path is scattered at a surface.
     fn scattered(&mut self, vertex: &Vertex) {
         let _ = vertex;
@@ -22,6 +26,15 @@ pub trait Observer {
     fn cut(&mut self, place: Place, throughput: Rgb) {
         let _ = (place, throughput);
     }
+}
+
+/// A surface, and which face of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The surface.
+    pub primitive: PrimitiveId,
+    /// Which of its faces.
+    pub face: Face,
 }
 
 /// Where a path is scattered.
@@ -54,4 +67,6 @@ pub struct Contribution {
     pub radiance: Rgb,
 }
 
-impl Observer for () {}
+impl Observer for () {
+    const WATCHES: bool = false;
+}

@@ -2,13 +2,12 @@
 //!
 //! It depends on nothing but what the picture shows: not on its size, window, seed or samples.
 
-use super::integrator::Scratch;
-use super::observer::Observer;
-use super::sampler::Sampler;
-use super::shape::Place;
-use super::{Tracer, film, integrator};
+use super::camera::Eye;
+use super::queue::{Arrived, Job, Jobs, View};
+use super::{Tracer, film};
 use crate::color::{Rgb, luminance};
-use crate::math::{DVec2, exp, ln};
+use crate::math::{exp, ln};
+use crate::scene::Filter;
 use rayon::prelude::*;
 use std::f64::consts::LN_2;
 
@@ -24,16 +23,6 @@ pub struct Prepass {
     pub cut: f64,
 }
 
-/// What paths still carried when the limit of bounces ended them.
-#[derive(Default)]
-struct Cut(f64);
-
-impl Observer for Cut {
-    fn cut(&mut self, _: Place, throughput: Rgb) {
-        self.0 += luminance(throughput);
-    }
-}
-
 /// Cells across and down, and paths in each.
 const CELLS: u32 = 32;
 const PATHS: u32 = 4;
@@ -45,9 +34,20 @@ const MIDDLE: f64 = 0.18;
 const BRIGHT: f64 = 0.9;
 
 pub(super) fn prepass(tracer: &Tracer) -> Prepass {
-    let cells: Vec<(Rgb, f64)> = (0..CELLS * CELLS).into_par_iter().map(|cell| look(tracer, cell)).collect();
-    let cut = cells.iter().map(|(_, cut)| cut).sum::<f64>() / f64::from(CELLS * CELLS * PATHS);
-    let mut cells: Vec<f64> = cells.iter().map(|(mean, _)| luminance(*mean)).collect();
+    let eye = Eye::with(&tracer.scene.camera, [CELLS; 2], Filter::Box, &tracer.space);
+    let view = View::new(&eye, SEED);
+    let rows: Vec<Row> = (0..CELLS)
+        .into_par_iter()
+        .map(|row| {
+            let mut row = Row::new(row);
+            tracer.trace(&view, &mut row);
+            row
+        })
+        .collect();
+    let paths = f64::from(PATHS);
+    let cut = rows.iter().map(Row::cut).sum::<f64>() / (f64::from(CELLS * CELLS) * paths);
+    let means = rows.iter().flat_map(Row::sums);
+    let mut cells: Vec<f64> = means.map(|sum| luminance(sum) * tracer.unit / paths).collect();
     cells.sort_unstable_by(f64::total_cmp);
     let typical = log_mean(&cells);
     let bright = cells[cells.len() * 95 / 100].max(typical);
@@ -55,21 +55,47 @@ pub(super) fn prepass(tracer: &Tracer) -> Prepass {
     Prepass { exposure_stops: exposure(typical, bright), scale, cut }
 }
 
-/// The mean radiance of a cell, and what its paths still carried where they were cut.
-fn look(tracer: &Tracer, cell: u32) -> (Rgb, f64) {
-    let (x, y) = (cell % CELLS, cell / CELLS);
-    let mut scratch = Scratch::default();
-    let mut cut = Cut::default();
-    let sum: Rgb = (0..PATHS)
-        .map(|path| {
-            let sampler = Sampler::new(SEED, x, y, path);
-            let [u, v] = sampler.pair(super::sampler::Pair::Film);
-            let place = DVec2::new(f64::from(x) + u, f64::from(y) + v) / f64::from(CELLS);
-            let ray = tracer.eye.through(2.0 * place - 1.0, &sampler);
-            integrator::trace(tracer, ray, &sampler, &mut scratch, &mut cut).radiance
-        })
-        .sum();
-    (sum / f64::from(PATHS), cut.0)
+/// A row of cells. Paths end in any order, so each keeps its own place.
+struct Row {
+    y: u32,
+    next: u32,
+    radiance: [Rgb; (CELLS * PATHS) as usize],
+    /// What paths still carried when the limit of bounces ended them, in fixed point.
+    cut: u64,
+}
+
+/// Units of the fixed point in a throughput of 1.
+const CUT_SCALE: f64 = (1u64 << 32) as f64;
+
+impl Row {
+    fn new(y: u32) -> Row {
+        Row { y, next: 0, radiance: [Rgb::ZERO; (CELLS * PATHS) as usize], cut: 0 }
+    }
+
+    fn sums(&self) -> impl Iterator<Item = Rgb> {
+        self.radiance.chunks_exact(PATHS as usize).map(|paths| paths.iter().sum())
+    }
+
+    fn cut(&self) -> f64 {
+        self.cut as f64 / CUT_SCALE
+    }
+}
+
+impl Jobs for Row {
+    fn next(&mut self) -> Option<Job> {
+        let pixel = self.next;
+        self.next += 1;
+        let job = Job { x: pixel / PATHS, y: self.y, sample: pixel % PATHS, pixel };
+        (job.x < CELLS).then_some(job)
+    }
+
+    fn finish(&mut self, arrived: &Arrived) {
+        self.radiance[arrived.pixel as usize] = super::wide(arrived.radiance);
+    }
+
+    fn cut(&mut self, throughput: Rgb) {
+        self.cut += (luminance(throughput) * CUT_SCALE) as u64;
+    }
 }
 
 /// The geometric mean of what is not black, each raised to a thousandth of the mean at least: noise in the

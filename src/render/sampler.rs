@@ -5,6 +5,8 @@
 //! (Brent Burley, "Practical hash-based Owen scrambling", JCGT 2020). Any 2ᵏ samples of a pixel from a multiple
 //! of 2ᵏ are stratified in every pair, and pairs are independent of each other.
 
+use super::lanes::{Lanes, Word, apart};
+
 /// Pairs of dimensions of one camera path: two for the camera, then the same number for each vertex, whatever
 /// happens there, so that a dimension's meaning does not depend on branches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,93 +15,129 @@ pub enum Pair {
     Film,
     /// Place on the lens.
     Lens,
-    /// Direction of scattering at the vertex of that index.
-    Direction(u32),
+    /// Direction of scattering at a vertex.
+    Direction,
     /// Which lobe scatters, and whether roulette lets the path live.
-    Lobe(u32),
+    Lobe,
     /// Point on a light.
-    Light(u32),
+    Light,
     /// Which light, and which of its parts.
-    Choice(u32),
+    Choice,
 }
 
 impl Pair {
-    fn index(self) -> u64 {
-        let (vertex, offset) = match self {
-            Pair::Film => return 0,
-            Pair::Lens => return 1,
-            Pair::Direction(vertex) => (vertex, 2),
-            Pair::Lobe(vertex) => (vertex, 3),
-            Pair::Light(vertex) => (vertex, 4),
-            Pair::Choice(vertex) => (vertex, 5),
-        };
-        offset + 4 * u64::from(vertex)
+    /// Its index at the vertex with none before it.
+    fn first(self) -> u32 {
+        match self {
+            Pair::Film => 0,
+            Pair::Lens => 1,
+            Pair::Direction => 2,
+            Pair::Lobe => 3,
+            Pair::Light => 4,
+            Pair::Choice => 5,
+        }
     }
 }
 
-/// The numbers of one camera path.
-#[derive(Clone, Copy, Debug)]
-pub struct Sampler {
-    key: u64,
-    sample: u32,
+/// Pairs of each vertex.
+const EACH: u32 = 4;
+/// 2³² over the golden ratio: it spreads successive pairs over all bits.
+const GOLDEN: u32 = 0x9e37_79b9;
+
+/// The numbers of one camera path a lane.
+#[derive(Clone, Copy)]
+pub struct Sampler<L: Lanes> {
+    /// Hash of seed and pixel.
+    pub key: [L::U; 2],
+    /// The sample's index, its bits in the opposite order.
+    pub index: L::U,
 }
 
-impl Sampler {
-    /// Those of a sample of a pixel of the full picture.
-    pub fn new(seed: u64, x: u32, y: u32, sample: u32) -> Sampler {
-        Sampler { key: mix(mix(seed) ^ (u64::from(x) | u64::from(y) << 32)), sample }
-    }
-
-    /// Two numbers in (0, 1).
-    pub fn pair(&self, pair: Pair) -> [f64; 2] {
-        // The odd constant is 2⁶⁴ over the golden ratio: it spreads successive pairs over all bits.
-        let hash = mix(self.key ^ pair.index().wrapping_mul(0x9e37_79b9_7f4a_7c15));
-        let scramble = mix(hash);
-        let index = owen(self.sample, hash as u32);
-        let x = owen(van_der_corput(index), scramble as u32);
-        let y = owen(pascal(index), (scramble >> 32) as u32);
-        [unit(x), unit(y)]
-    }
-}
-
-/// The middle of one of 2³² cells of the unit interval.
-fn unit(x: u32) -> f64 {
-    (f64::from(x) + 0.5) * (1.0 / 4_294_967_296.0)
-}
-
-/// Sobol's first dimension.
-fn van_der_corput(index: u32) -> u32 {
-    index.reverse_bits()
-}
-
-/// Sobol's second dimension. Its generator matrix is Pascal's triangle modulo 2, where entry (i, j) is 1 if the
-/// bits of i are among those of j (Lucas): so digit i is the parity of the index bits j ⊇ i, and one step for
-/// each of the five bits of a position sums them.
-fn pascal(index: u32) -> u32 {
-    let mut x = index;
-    x ^= (x & 0xaaaa_aaaa) >> 1;
-    x ^= (x & 0xcccc_cccc) >> 2;
-    x ^= (x & 0xf0f0_f0f0) >> 4;
-    x ^= (x & 0xff00_ff00) >> 8;
-    x ^= (x & 0xffff_0000) >> 16;
-    x.reverse_bits()
-}
-
-/// Flips each binary digit depending on a hash of those before it (Owen's nested uniform scrambling), with the
-/// constants of Burley's section 3: on the reversed word every step lets bits affect only higher ones.
-fn owen(x: u32, seed: u32) -> u32 {
-    let mut x = x.reverse_bits().wrapping_add(seed);
-    for even in [0x6c50_b47c, 0xb82f_1e52, 0xc7af_e638, 0x8d22_f6e6_u32] {
-        x ^= x.wrapping_mul(even);
-    }
-    x.reverse_bits()
+/// The hash of a seed, for [`Sampler::new`].
+pub fn seed_key(seed: u64) -> [u32; 2] {
+    let key = mix_wide(seed);
+    [key as u32, (key >> 32) as u32]
 }
 
 /// A bijection that spreads every bit over all others: the finaliser of SplitMix64 (Steele, Lea and Flood, "Fast
 /// splittable pseudorandom number generators", 2014).
-pub(super) fn mix(z: u64) -> u64 {
+pub(super) fn mix_wide(z: u64) -> u64 {
     let z = z.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     z ^ (z >> 31)
+}
+
+impl<L: Lanes> Sampler<L> {
+    /// Those of a sample of a pixel of the full picture.
+    #[inline(always)]
+    pub fn new(l: L, seed: [u32; 2], x: L::U, y: L::U, sample: L::U) -> Sampler<L> {
+        let a = mix(l, x ^ l.u(seed[0]));
+        let b = mix(l, y + a);
+        Sampler { key: [b, mix(l, b ^ l.u(seed[1])) + a], index: sample.reversed() }
+    }
+
+    /// Two numbers in (0, 1), at the vertex that so many others went before.
+    #[inline(always)]
+    pub fn pair(&self, l: L, pair: Pair, vertex: L::U) -> [L::F; 2] {
+        apart(
+            l,
+            #[inline(always)]
+            || self.pair_here(l, pair, vertex),
+        )
+    }
+
+    #[inline(always)]
+    fn pair_here(&self, l: L, pair: Pair, vertex: L::U) -> [L::F; 2] {
+        let dimension = vertex * l.u(EACH) + l.u(pair.first());
+        let hash = mix(l, self.key[0] + dimension * l.u(GOLDEN)) ^ self.key[1];
+        let shuffle = mix(l, hash);
+        let scramble = mix(l, shuffle ^ self.key[0]);
+        let index = owen(l, self.index, shuffle).reversed();
+        // Sobol's first dimension is the index with its digits reversed, as Owen's scrambling wants it reversed again.
+        let x = owen(l, index, scramble).reversed();
+        let y = owen(l, pascal(l, index), mix(l, scramble)).reversed();
+        [unit(l, x), unit(l, y)]
+    }
+}
+
+/// The middle of one of 2²³ cells of the unit interval.
+#[inline(always)]
+fn unit<L: Lanes>(l: L, x: L::U) -> L::F {
+    // The number from 1 to 2 with these digits, less 1 and plus half a cell: exact.
+    ((x >> 9) | l.u(0x3f80_0000)).float() - (1.0 - 1.0 / 16_777_216.0)
+}
+
+/// Sobol's second dimension, before its digits are reversed. Its generator matrix is Pascal's triangle modulo 2,
+/// where entry (i, j) is 1 if the bits of i are among those of j (Lucas): so digit i is the parity of the index
+/// bits j ⊇ i, and one step for each of the five bits of a position sums them.
+#[inline(always)]
+fn pascal<L: Lanes>(l: L, index: L::U) -> L::U {
+    let x = index;
+    let x = x ^ ((x & l.u(0xaaaa_aaaa)) >> 1);
+    let x = x ^ ((x & l.u(0xcccc_cccc)) >> 2);
+    let x = x ^ ((x & l.u(0xf0f0_f0f0)) >> 4);
+    let x = x ^ ((x & l.u(0xff00_ff00)) >> 8);
+    x ^ (x >> 16)
+}
+
+/// Owen's nested uniform scrambling of a number given with its digits reversed, so that its leading digit is the
+/// lowest bit: flips each digit depending on a hash of those before it, with the constants of Burley's section 3.
+/// Every step lets bits affect only higher ones.
+#[inline(always)]
+fn owen<L: Lanes>(l: L, x: L::U, seed: L::U) -> L::U {
+    let x = x + seed;
+    let x = x ^ (x * l.u(0x6c50_b47c));
+    let x = x ^ (x * l.u(0xb82f_1e52));
+    let x = x ^ (x * l.u(0xc7af_e638));
+    x ^ (x * l.u(0x8d22_f6e6))
+}
+
+/// A bijection that spreads every bit over all others (Chris Wellons, "Prospecting for hash functions", 2018:
+/// `lowbias32`).
+#[inline(always)]
+fn mix<L: Lanes>(l: L, x: L::U) -> L::U {
+    let x = (x ^ (x >> 16)) * l.u(0x7feb_352d);
+    let x = (x ^ (x >> 15)) * l.u(0x846c_a68b);
+    x ^ (x >> 16)
 }

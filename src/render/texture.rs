@@ -1,7 +1,8 @@
 //! Colour by place: what a texture shows at a point of a surface.
 
-use super::sampler::mix;
-use super::shape::{Face, SurfacePoint, mesh_uv};
+use super::exact::{SurfacePoint, mesh_uv};
+use super::sampler::mix_wide as mix;
+use super::shape::Face;
 use crate::asset::Image;
 use crate::color::Rgb;
 use crate::math::{DVec2, DVec3, PI, atan2};

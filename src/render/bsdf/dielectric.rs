@@ -2,69 +2,79 @@
 //! refraction through rough surfaces", 2007).
 
 use super::microfacet::{distribution, masking, sample_visible, shadowing, visible_pdf};
-use super::{Sample, fresnel, reflect};
-use crate::color::Rgb;
-use crate::math::DVec3;
+use super::{Samples, fresnel, reflect};
+use crate::render::lanes::{Float, Lanes, Mask};
+use crate::render::vector::V;
 
-pub(super) fn sample(eta: f64, alpha: f64, wo: DVec3, lobe: f64, u: [f64; 2]) -> Option<Sample> {
-    let h = sample_visible(wo, alpha, u);
+#[inline(always)]
+pub(super) fn sample<L: Lanes>(
+    l: L,
+    eta: L::F,
+    alpha: L::F,
+    wo: V<L>,
+    lobe: L::F,
+    u: [L::F; 2],
+) -> Samples<L> {
+    let (zero, one) = (l.f(0.0), l.f(1.0));
+    let h = sample_visible(l, wo, alpha, u);
     let facing = wo.dot(h);
-    let fresnel = fresnel::dielectric(facing, eta);
-    let seen = visible_pdf(wo, h, alpha);
-    if lobe < fresnel.reflectance {
-        let wi = reflect(wo, h);
-        let weight = Rgb::splat(shadowing(wo, wi, alpha) / masking(wo, alpha));
-        let pdf = fresnel.reflectance * seen / (4.0 * facing);
-        return (wi.z > 0.0).then_some(Sample { wi, weight, pdf, specular: false });
-    }
-    let wi = (h * facing - wo) / eta - h * fresnel.cosine;
+    let fresnel = fresnel::dielectric(l, facing, eta);
+    let seen = visible_pdf(l, wo, h, alpha);
+    let reflects = lobe.lt(fresnel.reflectance);
+
+    let mirrored = reflect(wo, h);
+    let mirrored_weight = shadowing(l, wo, mirrored, alpha) / masking(l, wo, alpha);
+    let mirrored_pdf = fresnel.reflectance * seen / (facing * 4.0);
+
+    let inverse = one / eta;
+    let refracted = (h * facing - wo) * inverse - h * fresnel.cosine;
     // Radiance from the denser side is thinned: see `specular`.
-    let weight = Rgb::splat(masking(wi, alpha) / (eta * eta));
-    let pdf = (1.0 - fresnel.reflectance) * seen * squeeze(eta, facing, -fresnel.cosine);
-    (wi.z < 0.0 && pdf > 0.0).then_some(Sample { wi, weight, pdf, specular: false })
-}
+    let refracted_weight = masking(l, refracted, alpha) * inverse * inverse;
+    let refracted_pdf = (one - fresnel.reflectance) * seen * squeeze::<L>(eta, facing, -fresnel.cosine);
 
-pub(super) fn eval(eta: f64, alpha: f64, wo: DVec3, wi: DVec3) -> f64 {
-    let Some(facet) = facet(eta, wo, wi) else { return 0.0 };
-    if wi.z > 0.0 {
-        return facet.reflectance * distribution(facet.h, alpha) * shadowing(wo, wi, alpha) / (4.0 * wo.z);
-    }
-    let shadowing = masking(wo, alpha) * masking(wi, alpha);
-    let share = (1.0 - facet.reflectance) * distribution(facet.h, alpha) * shadowing;
-    share * facet.facing / wo.z * squeeze(eta, facet.facing, wi.dot(facet.h)) / (eta * eta)
-}
-
-pub(super) fn pdf(eta: f64, alpha: f64, wo: DVec3, wi: DVec3) -> f64 {
-    let Some(facet) = facet(eta, wo, wi) else { return 0.0 };
-    let seen = visible_pdf(wo, facet.h, alpha);
-    if wi.z > 0.0 {
-        facet.reflectance * seen / (4.0 * facet.facing)
-    } else {
-        (1.0 - facet.reflectance) * seen * squeeze(eta, facet.facing, wi.dot(facet.h))
+    let pdf = reflects.pick(mirrored_pdf, refracted_pdf);
+    let right_side = (reflects & zero.lt(mirrored.z)) | (!reflects & refracted.z.lt(zero));
+    Samples {
+        some: right_side & zero.lt(pdf),
+        wi: V::pick(reflects, mirrored, refracted),
+        weight: V::all(reflects.pick(mirrored_weight, refracted_weight)),
+        pdf,
+        specular: l.mask(0),
     }
 }
 
-/// The facet that carries light between two directions.
-struct Facet {
-    h: DVec3,
-    /// Cosine of `wo` to it, above 0.
-    facing: f64,
-    reflectance: f64,
-}
-
-fn facet(eta: f64, wo: DVec3, wi: DVec3) -> Option<Facet> {
-    let h = if wi.z > 0.0 { wo + wi } else { -(wo + eta * wi) };
-    // Towards `wo`'s side, whichever side is denser.
-    let h = h.normalize_or_zero();
-    let h = if h.z < 0.0 { -h } else { h };
+#[inline(always)]
+pub(super) fn eval<L: Lanes>(l: L, eta: L::F, alpha: L::F, wo: V<L>, wi: V<L>) -> (L::F, L::F) {
+    let (zero, one) = (l.f(0.0), l.f(1.0));
+    let above = zero.lt(wi.z);
+    // The facet that carries light between the two directions, towards `wo`'s side, whichever side is denser.
+    let h = V::pick(above, wo + wi, -(wo + wi * eta)).normalized(l);
+    let h = V::pick(h.z.lt(zero), -h, h);
     let facing = wo.dot(h);
-    let right_side = facing > 0.0 && wi.dot(h) * wi.z > 0.0;
-    right_side.then(|| Facet { h, facing, reflectance: fresnel::dielectric(facing, eta).reflectance })
+    let behind = wi.dot(h);
+    let some = zero.lt(facing) & zero.lt(behind * wi.z);
+    let reflectance = fresnel::dielectric(l, facing, eta).reflectance;
+    let d = distribution(l, h, alpha);
+    let seen = visible_pdf(l, wo, h, alpha);
+
+    let mirrored = reflectance * d * shadowing(l, wo, wi, alpha) / (wo.z * 4.0);
+    let mirrored_pdf = reflectance * seen / (facing * 4.0);
+
+    let through = one - reflectance;
+    let squeezed = squeeze::<L>(eta, facing, behind);
+    let share = through * d * masking(l, wo, alpha) * masking(l, wi, alpha);
+    let refracted = share * facing / wo.z * squeezed / (eta * eta);
+    let refracted_pdf = through * seen * squeezed;
+    (
+        some.pick(above.pick(mirrored, refracted), zero),
+        some.pick(above.pick(mirrored_pdf, refracted_pdf), zero),
+    )
 }
 
 /// Solid angle of facet normals for each of refracted directions (Walter's eq. 17), by the cosines of `wo` and
 /// `wi` to the facet.
-fn squeeze(eta: f64, facing: f64, behind: f64) -> f64 {
+#[inline(always)]
+fn squeeze<L: Lanes>(eta: L::F, facing: L::F, behind: L::F) -> L::F {
     let sum = facing + eta * behind;
-    eta * eta * behind.abs() / (sum * sum)
+    eta * eta * behind.magnitude() / (sum * sum)
 }

@@ -1,34 +1,33 @@
-//! Rough conductors: facets that are mirrors.
+//! Conductors: facets that reflect by Schlick's approximation.
 
 use super::microfacet::{distribution, masking, sample_visible, shadowing, visible_pdf};
-use super::{Sample, fresnel, reflect};
-use crate::color::Rgb;
-use crate::math::DVec3;
+use super::{Samples, fresnel, reflect};
+use crate::render::lanes::{Float, Lanes, Mask};
+use crate::render::vector::V;
 
-pub(super) fn sample(color: Rgb, alpha: f64, wo: DVec3, u: [f64; 2]) -> Option<Sample> {
-    let h = sample_visible(wo, alpha, u);
+#[inline(always)]
+pub(super) fn sample<L: Lanes>(l: L, color: V<L>, alpha: L::F, wo: V<L>, u: [L::F; 2]) -> Samples<L> {
+    let h = sample_visible(l, wo, alpha, u);
     let wi = reflect(wo, h);
-    if wi.z <= 0.0 {
-        return None;
+    let facing = wo.dot(h);
+    let share = shadowing(l, wo, wi, alpha) / masking(l, wo, alpha);
+    Samples {
+        some: l.f(0.0).lt(wi.z),
+        wi,
+        weight: fresnel::schlick(l, color, facing) * share,
+        pdf: visible_pdf(l, wo, h, alpha) / (facing * 4.0),
+        specular: l.mask(0),
     }
-    let share = shadowing(wo, wi, alpha) / masking(wo, alpha);
-    let weight = fresnel::schlick(color, wo.dot(h)) * share;
-    Some(Sample { wi, weight, pdf: visible_pdf(wo, h, alpha) / (4.0 * wo.dot(h)), specular: false })
 }
 
-pub(super) fn eval(color: Rgb, alpha: f64, wo: DVec3, wi: DVec3) -> Rgb {
-    if wi.z <= 0.0 {
-        return Rgb::ZERO;
-    }
-    let h = (wo + wi).normalize();
-    let density = distribution(h, alpha) * shadowing(wo, wi, alpha) / (4.0 * wo.z);
-    fresnel::schlick(color, wo.dot(h)) * density
-}
-
-pub(super) fn pdf(alpha: f64, wo: DVec3, wi: DVec3) -> f64 {
-    if wi.z <= 0.0 {
-        return 0.0;
-    }
-    let h = (wo + wi).normalize();
-    visible_pdf(wo, h, alpha) / (4.0 * wo.dot(h))
+#[inline(always)]
+pub(super) fn eval<L: Lanes>(l: L, color: V<L>, alpha: L::F, wo: V<L>, wi: V<L>) -> (V<L>, L::F) {
+    let zero = l.f(0.0);
+    let above = zero.lt(wi.z);
+    let h = (wo + wi).normalized(l);
+    let facing = wo.dot(h);
+    let density = distribution(l, h, alpha) * shadowing(l, wo, wi, alpha) / (wo.z * 4.0);
+    let pdf = visible_pdf(l, wo, h, alpha) / (facing * 4.0);
+    let value = fresnel::schlick(l, color, facing) * above.pick(density, zero);
+    (V::pick(above, value, V::all(zero)), above.pick(pdf, zero))
 }

@@ -1,22 +1,37 @@
 //! Glowing surfaces, sampled by area.
 
-use super::{LightSample, Receiver, Target};
-use crate::color::Rgb;
-use crate::math::{DVec3, PI};
-use crate::render::shape::{Face, Place, Ray, SurfacePoint, Wall, surface_point};
+use crate::math::{DVec2, DVec3, PI};
+use crate::render::exact::{SurfacePoint, surface_point};
+use crate::render::lanes::One;
+use crate::render::shape::{Face, Wall};
 use crate::render::warp;
+use crate::scene::Shape;
 use crate::scene::shape::{Form, Placed, Quadric, triangle_area};
-use crate::scene::{PrimitiveId, Shape};
 
 /// A glowing surface that has an end.
 pub struct Glowing {
-    id: PrimitiveId,
     shape: Shape,
     area: f64,
     /// Middle of its box, and half the diagonal squared.
     center: DVec3,
     extent_squared: f64,
     parts: Vec<Part>,
+}
+
+/// A direction to a point of a glowing surface.
+pub struct SurfaceSample {
+    /// The direction.
+    pub wi: DVec3,
+    /// How far away the point is, in metres.
+    pub distance: f64,
+    /// Density in solid angle.
+    pub pdf: f64,
+    /// The point.
+    pub point: SurfacePoint,
+    /// On which face it lies.
+    pub face: Face,
+    /// Whether the surface may hide its own points.
+    pub hides_itself: bool,
 }
 
 /// A piece of a surface that is sampled by itself.
@@ -32,7 +47,7 @@ struct Part {
 
 impl Glowing {
     /// Prepares a surface; none where it has no end, or no area.
-    pub fn new(id: PrimitiveId, shape: &Shape) -> Option<Glowing> {
+    pub fn new(shape: &Shape) -> Option<Glowing> {
         let bounds = shape.bounds()?;
         let pieces = pieces(shape);
         let area: f64 = pieces.iter().map(|(.., area)| area).sum();
@@ -47,36 +62,36 @@ impl Glowing {
         };
         let parts = pieces.into_iter().filter(|(.., area)| *area > 0.0).map(part).collect();
         let extent_squared = 0.25 * bounds.size().length_squared();
-        Some(Glowing { id, shape: shape.clone(), area, center: bounds.center(), extent_squared, parts })
+        Some(Glowing { shape: shape.clone(), area, center: bounds.center(), extent_squared, parts })
     }
 
-    /// About the solid angle that it fills, seen from a point.
-    pub fn estimate(&self, from: DVec3) -> f64 {
-        self.area / self.center.distance_squared(from).max(self.extent_squared)
+    /// Its area in m², middle, and half the diagonal of its box squared.
+    pub fn size(&self) -> (f64, DVec3, f64) {
+        (self.area, self.center, self.extent_squared)
     }
 
     /// A direction to a point by area: the part by its share, and within the side of a quadric uniform in y and
     /// angle.
-    pub fn sample(&self, receiver: &Receiver, part: f64, u: [f64; 2], radiance: Rgb) -> Option<LightSample> {
+    pub fn sample(&self, from: DVec3, part: f64, u: [f64; 2]) -> Option<SurfaceSample> {
         let index = self.parts.partition_point(|known| known.end <= part).min(self.parts.len() - 1);
         let part = &self.parts[index];
         let point = self.point(part, u);
         let SurfacePoint { p, n, .. } = point;
-        let to = p - receiver.p;
+        let to = p - from;
         let distance = to.length();
         let wi = to / distance;
         let facing = -n.dot(wi);
         let glows = if self.shape.is_closed() { facing > 0.0 } else { facing != 0.0 };
-        let pdf = self.pdf(receiver.p, wi, &point, part.face);
-        let place = Place { primitive: self.id, face: part.face };
+        let pdf = self.pdf(from, wi, &point, part.face);
         let hides_itself = !matches!(self.shape, Shape::Disk(_) | Shape::Box(_));
-        (glows && pdf > 0.0 && pdf < f64::INFINITY).then_some(LightSample {
+        let face = part.face;
+        (glows && pdf > 0.0 && pdf < f64::INFINITY).then_some(SurfaceSample {
             wi,
             distance,
-            radiance,
             pdf,
-            delta: false,
-            target: Some(Target { point, place, hides_itself }),
+            point,
+            face,
+            hides_itself,
         })
     }
 
@@ -104,7 +119,7 @@ impl Glowing {
         match (&self.shape, part.face) {
             (Shape::Quadric(quadric), face) => on_quadric(quadric, face, part.stretch, u),
             (Shape::Disk(placed), _) => {
-                let p = warp::disc(u);
+                let p = disc(u);
                 on_placed(placed, DVec3::new(p.x, 0.0, p.y), DVec3::Y)
             }
             (Shape::Box(placed), Face::Wall(wall)) => {
@@ -122,8 +137,7 @@ impl Glowing {
                 let [a, b, c] = instance.corners(triangle);
                 let root = u[0].sqrt();
                 let p = (1.0 - root) * a + root * (1.0 - u[1]) * b + root * u[1] * c;
-                let ray = Ray { origin: p, direction: DVec3::ZERO, start: None };
-                surface_point(&self.shape, &ray, 0.0, part.face)
+                surface_point(&self.shape, p, part.face)
             }
             (shape, face) => unreachable!("{face:?} of {shape:?} is no part"),
         }
@@ -162,7 +176,7 @@ fn pieces(shape: &Shape) -> Vec<(Face, [f64; 2], f64)> {
 fn on_quadric(quadric: &Quadric, face: Face, [low, high]: [f64; 2], u: [f64; 2]) -> SurfacePoint {
     let (object, gradient) = match face {
         Face::Low | Face::High => {
-            let p = quadric.form.radius_squared(low).sqrt() * warp::disc(u);
+            let p = quadric.form.radius_squared(low).sqrt() * disc(u);
             (DVec3::new(p.x, low, p.y), if face == Face::Low { DVec3::NEG_Y } else { DVec3::Y })
         }
         _ => {
@@ -176,4 +190,10 @@ fn on_quadric(quadric: &Quadric, face: Face, [low, high]: [f64; 2], u: [f64; 2])
 
 fn on_placed(placed: &Placed, p: DVec3, n: DVec3) -> SurfacePoint {
     SurfacePoint::new(placed.world_from_object.transform_point3(p), placed.normal(n))
+}
+
+/// A point of the unit disc.
+fn disc(u: [f64; 2]) -> DVec2 {
+    let [x, y] = warp::disc(One, u.map(|u| u as f32));
+    DVec2::new(f64::from(x), f64::from(y))
 }

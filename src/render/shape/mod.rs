@@ -2,39 +2,52 @@
 //!
 //! There is no distance that counts as "too near": a ray that starts on a surface knows so, and solves it with
 //! the constant term of its equation exactly zero. The root 0 is then the start itself and drops out, and the
-//! other root is exact however large the surface. So rooms of giant spheres show no acne and leak no light.
+//! other root is as exact as any. So rooms of giant spheres show no acne and leak no light.
+//!
+//! Single precision needs the right form of the equation for each kind of surface:
+//!
+//! | kind | form | because |
+//! |---|---|---|
+//! | [`flat`] | signed height over the plane, from the camera | its constant is the camera's height, small where it matters |
+//! | [`giant`] | the same with a curvature: no centre, no radius | centre and radius are large numbers whose difference matters |
+//! | [`ball`] | offset of the ray from the centre (Haines et al., *Ray Tracing Gems*, ch. 7) | radius squared is lost beside a distance squared |
+//! | [`quadric`] | object space, from the point of the ray next to the middle | both |
 
-mod cuboid;
-mod disk;
-mod mesh;
-mod plane;
-mod quadric;
-mod sphere;
+pub mod ball;
+pub mod flat;
+pub mod giant;
+pub mod quadric;
 
+use super::lanes::{Float, Lanes, Mask, One, Word};
+use super::vector::V;
 use crate::math::DVec3;
-use crate::scene::{PrimitiveId, Shape};
-pub use mesh::Tree;
-pub(super) use mesh::uv as mesh_uv;
 
-/// A half-line, and the surface it starts on.
-#[derive(Clone, Copy, Debug)]
-pub struct Ray {
+/// A half-line a lane, and the surface it starts on.
+#[derive(Clone, Copy)]
+pub struct Rays<L: Lanes> {
     /// Where it starts.
-    pub origin: DVec3,
+    pub o: V<L>,
     /// Unit vector.
-    pub direction: DVec3,
-    /// The surface that `origin` lies on, if any.
-    pub start: Option<Place>,
+    pub d: V<L>,
+    /// The place that `o` lies on: see [`encode`]; [`NOWHERE`] if it is on no surface.
+    pub start: L::U,
+    /// The detail of that place.
+    pub detail: L::U,
 }
 
-/// A surface, and which face of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
-    /// The surface.
-    pub primitive: PrimitiveId,
-    /// Which of its faces.
-    pub face: Face,
+/// What rays meet.
+#[derive(Clone, Copy)]
+pub struct Hits<L: Lanes> {
+    /// Distance; infinite where nothing is met.
+    pub t: L::F,
+    /// The place, [`NOWHERE`] where nothing is met: see [`encode`].
+    pub place: L::U,
+    /// The detail of the place.
+    pub detail: L::U,
 }
+
+/// The place of what is on no surface.
+pub const NOWHERE: u32 = u32::MAX;
 
 /// A smooth piece of a shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,56 +82,179 @@ impl Wall {
     }
 }
 
-/// A point of a surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfacePoint {
+/// Bits of a place that tell the face.
+pub const FACE_BITS: u32 = 2;
+
+/// Faces that a place tells; the last says to look at the detail.
+const CODES: [u32; 4] = [0, 1, 2, 3];
+/// Of a detail: the wall of a box, not a triangle.
+const WALL: u32 = 1 << 31;
+
+/// The place of a face of a surface, and the detail that tells the face where the place does not.
+pub const fn encode(slot: u32, face: Face) -> (u32, u32) {
+    let [side, low, high, other] = CODES;
+    let (code, detail) = match face {
+        Face::Side => (side, 0),
+        Face::Low => (low, 0),
+        Face::High => (high, 0),
+        Face::Wall(wall) => (other, WALL | (wall.axis as u32) << 1 | wall.upper as u32),
+        Face::Triangle(triangle) => (other, triangle),
+    };
+    (slot << FACE_BITS | code, detail)
+}
+
+/// The place of a face of the surface in a slot.
+pub const fn place(slot: u32, face: Face) -> u32 {
+    encode(slot, face).0
+}
+
+/// The slot of a place.
+pub const fn slot(place: u32) -> u32 {
+    place >> FACE_BITS
+}
+
+/// The face of a place.
+pub const fn decode(place: u32, detail: u32) -> Face {
+    match place & ((1 << FACE_BITS) - 1) {
+        0 => Face::Side,
+        1 => Face::Low,
+        2 => Face::High,
+        _ if detail & WALL == 0 => Face::Triangle(detail),
+        _ => Face::Wall(Wall { axis: (detail >> 1 & 3) as u8, upper: detail & 1 == 1 }),
+    }
+}
+
+/// What a surface is made of, as far as rays care.
+#[derive(Clone, Copy, Debug)]
+pub struct Nature {
+    /// A ray to what glows must not be stopped by it.
+    pub glows: bool,
+    /// No light comes from below.
+    pub opaque: bool,
+}
+
+impl<L: Lanes> Rays<L> {
+    /// One of them.
+    #[inline(always)]
+    pub fn lane(&self, lane: usize) -> Rays<One> {
+        Rays {
+            o: V::splat(One, self.o.get(lane)),
+            d: V::splat(One, self.d.get(lane)),
+            start: One.u(self.start.get(lane)),
+            detail: One.u(self.detail.get(lane)),
+        }
+    }
+}
+
+impl<L: Lanes> Hits<L> {
+    /// One of them.
+    #[inline(always)]
+    pub fn lane(&self, lane: usize) -> Hits<One> {
+        Hits { t: self.t.get(lane), place: One.u(self.place.get(lane)), detail: One.u(self.detail.get(lane)) }
+    }
+
+    /// Sets one of them.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, hit: &Hits<One>) {
+        self.t.set(lane, hit.t);
+        self.place.set(lane, hit.place.get(0));
+        self.detail.set(lane, hit.detail.get(0));
+    }
+}
+
+impl Hits<One> {
+    /// Takes another hit if it is nearer, or as near and in an earlier place; but for the surface in a slot.
+    #[inline(always)]
+    pub fn take(&mut self, other: Hits<One>, except: u32) {
+        let (place, known) = (other.place.get(0), self.place.get(0));
+        if (other.t < self.t || other.t == self.t && place < known) && slot(place) != except {
+            *self = other;
+        }
+    }
+}
+
+/// A point of a surface a lane.
+#[derive(Clone, Copy)]
+pub struct Points<L: Lanes> {
     /// Where.
-    pub p: DVec3,
+    pub p: V<L>,
     /// Unit normal, outwards where the shape is closed.
-    pub n: DVec3,
-    /// Unit normal to shade with, on the side of the other: that of the round surface which a smooth mesh stands for.
-    pub shading: DVec3,
+    pub n: V<L>,
+    /// Unit normal to shade with, on the same side: that of the round surface which a smooth mesh stands for.
+    pub shading: V<L>,
 }
 
-impl SurfacePoint {
-    /// A point of a surface that is what it looks.
-    pub fn new(p: DVec3, n: DVec3) -> SurfacePoint {
-        SurfacePoint { p, n, shading: n }
+impl<L: Lanes> Hits<L> {
+    /// Nothing is met.
+    #[inline(always)]
+    pub fn nothing(l: L) -> Hits<L> {
+        Hits { t: l.f(f32::INFINITY), place: l.u(NOWHERE), detail: l.u(0) }
     }
 }
 
-/// The least distance above 0 at which a ray meets a shape. `start` is the face that the ray starts on, if it
-/// starts on this very shape. A mesh is asked triangle by triangle: [`Tree`] is the fast way.
-#[inline]
-pub fn intersect(shape: &Shape, ray: &Ray, start: Option<Face>) -> Option<(f64, Face)> {
-    match shape {
-        Shape::Sphere { center, radius } => {
-            sphere::intersect(*center, *radius, ray, start.is_some()).map(|t| (t, Face::Side))
-        }
-        Shape::Plane { point, normal } => {
-            plane::intersect(*point, *normal, ray, start.is_some()).map(|t| (t, Face::Side))
-        }
-        Shape::Quadric(quadric) => quadric::intersect(quadric, ray, start),
-        Shape::Disk(placed) => disk::intersect(placed, ray, start.is_some()).map(|t| (t, Face::Side)),
-        Shape::Box(placed) => cuboid::intersect(placed, ray, start),
-        Shape::Mesh(instance) => mesh::intersect(instance, ray, start),
+/// What all surfaces need to know of rays, computed once.
+#[derive(Clone, Copy)]
+pub struct Bundle<L: Lanes> {
+    /// The rays.
+    pub rays: Rays<L>,
+    /// o·d.
+    pub od: L::F,
+    /// o·o.
+    pub oo: L::F,
+    /// By how much a height over a surface may be wrong.
+    pub slop: L::F,
+}
+
+/// Rounding of a height relative to the coordinates that it is computed from.
+pub const ROUNDING: f32 = 1.0 / (1 << 20) as f32;
+
+impl<L: Lanes> Bundle<L> {
+    /// Computes it.
+    #[inline(always)]
+    pub fn new(rays: Rays<L>) -> Bundle<L> {
+        let (o, d) = (rays.o, rays.d);
+        let slop = (o.x.magnitude() + o.y.magnitude() + o.z.magnitude()) * ROUNDING;
+        Bundle { rays, od: o.dot(d), oo: o.squared(), slop }
     }
 }
 
-/// The point of a shape that a ray meets at a distance, with its normal.
-pub fn surface_point(shape: &Shape, ray: &Ray, t: f64, face: Face) -> SurfacePoint {
-    let near = ray.origin + t * ray.direction;
-    match shape {
-        Shape::Sphere { center, radius } => {
-            let n = (near - *center).normalize();
-            SurfacePoint::new(*center + *radius * n, n)
-        }
-        Shape::Plane { point, normal } => {
-            SurfacePoint::new(near - normal.dot(near - *point) * *normal, *normal)
-        }
-        Shape::Quadric(quadric) => quadric::surface_point(quadric, near, face),
-        Shape::Disk(placed) => disk::surface_point(placed, near),
-        Shape::Box(placed) => cuboid::surface_point(placed, near, face),
-        Shape::Mesh(instance) => mesh::surface_point(instance, near, face),
+/// A distance as a fraction, so that distances are compared without dividing.
+#[derive(Clone, Copy)]
+pub struct Ratios<L: Lanes> {
+    /// Above 0 where something is met, and then both are.
+    pub over: L::F,
+    /// See `over`.
+    pub under: L::F,
+}
+
+impl<L: Lanes> Ratios<L> {
+    /// Whether it is the lesser, and of something that is met.
+    #[inline(always)]
+    pub fn ahead_of(self, l: L, other: Ratios<L>) -> L::M {
+        l.f(0.0).lt(self.over) & (self.over * other.under).lt(other.over * self.under)
     }
+}
+
+/// The least root above 0 of a t² + 2bt + c = 0 with a > 0, by b, c, the root of b² − ac and 1/a. With w = |b| + root, the
+/// roots are those of the signs of b and c: c/w where they differ, from outside or towards a near wall; else w/a, to the
+/// far side; or none.
+#[inline(always)]
+fn first_ahead<L: Lanes>(l: L, b: L::F, c: L::F, root: L::F, inverse: L::F) -> Ratios<L> {
+    let zero = l.f(0.0);
+    let w = b.magnitude() + root;
+    // Inside or on the surface, and not towards the near side.
+    let away = c.le(zero) & b.le(zero);
+    let behind = zero.le(c) & zero.le(b);
+    let far = away & !behind;
+    if far.any() {
+        let over = behind.pick(-w, far.pick(w * inverse, c.magnitude()));
+        return Ratios { over, under: far.pick(l.f(1.0), w) };
+    }
+    Ratios { over: behind.pick(zero, c.magnitude()), under: w }
+}
+
+/// A height over an opaque surface of which so much may be due to rounding: what is below by no more than that is on it.
+#[inline(always)]
+fn lifted<L: Lanes>(l: L, height: L::F, slop: L::F) -> L::F {
+    (height + slop).lesser(height.greater(l.f(0.0)))
 }

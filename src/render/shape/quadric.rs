@@ -1,135 +1,162 @@
-//! Quadrics about an axis, cut by two planes, with or without caps.
+//! Quadrics: ellipsoids and hyperboloids, cut by two planes, with or without caps.
 
-use super::{Face, Ray, SurfacePoint};
-use crate::math::DVec3;
-use crate::scene::shape::{Form, Quadric};
+use super::{Face, Nature, Points, Rays, place};
+use crate::render::lanes::{Float, Lanes, Mask, Word};
+use crate::render::space::Space;
+use crate::render::vector::{V, single};
+use crate::scene::shape;
+
+/// A quadric as seen from the origin.
+#[derive(Clone, Copy, Debug)]
+pub struct Quadric {
+    /// Rows of the map to object space.
+    pub rows: [[f32; 3]; 3],
+    /// What that map takes to the origin of object space.
+    pub middle: [f32; 3],
+    /// The factor of y² in q.
+    pub sign: f32,
+    /// Half the factor of y in q.
+    pub slope: f32,
+    /// The constant in q.
+    pub constant: f32,
+    /// Ends in object space's y.
+    pub ends: [f32; 2],
+    /// Whether finite ends are closed by caps.
+    pub capped: bool,
+    /// 1 if rays are looked at from where they are next to the middle, 0 if from their start.
+    pub near: f32,
+    /// Whether it glows.
+    pub glows: bool,
+}
+
+impl Quadric {
+    /// The quadric in the coordinates of the tracer.
+    pub fn new(quadric: &shape::Quadric, space: &Space, nature: Nature) -> Quadric {
+        let m = quadric.object_from_world.matrix3 * space.unit();
+        let bounded = shape::Shape::Quadric(Box::new(*quadric)).bounds().is_some();
+        Quadric {
+            rows: [0, 1, 2].map(|i| single(m.row(i))),
+            middle: single(space.point(quadric.world_from_object.translation)),
+            sign: quadric.form.y_sign() as f32,
+            slope: quadric.form.y_slope() as f32,
+            constant: quadric.form.constant() as f32,
+            ends: [quadric.low as f32, quadric.high as f32],
+            capped: quadric.capped,
+            near: f32::from(u8::from(bounded)),
+            glows: nature.glows,
+        }
+    }
+
+    #[inline(always)]
+    fn object<L: Lanes>(&self, l: L, v: V<L>) -> V<L> {
+        let [x, y, z] = self.rows;
+        V::new(V::splat(l, x).dot(v), V::splat(l, y).dot(v), V::splat(l, z).dot(v))
+    }
+
+    /// The least distance above 0, not above 0 or no number if there is none, and the face that is met there. The
+    /// ray goes to object space with its direction not made a unit vector again, so that distances stay those of
+    /// the world.
+    ///
+    /// Whether a crossing belongs to the side or a cap is decided by comparing distances alone: a root counts if it
+    /// lies within the stretch between the two planes, a plane's if it lies within the inside of the quadric. At
+    /// the seam exactly one of the two holds, whatever was rounded, so a ray cannot slip in between.
+    #[inline(always)]
+    pub fn meet<L: Lanes>(&self, l: L, rays: &Rays<L>, slot: u32) -> (L::F, L::U) {
+        let none = l.f(f32::INFINITY);
+        let zero = l.f(0.0);
+        let on_face = |face: Face| rays.start.is(l.u(place(slot, face)));
+        let (on_side, on_low, on_high) = (on_face(Face::Side), on_face(Face::Low), on_face(Face::High));
+        let on_it = on_side | on_low | on_high;
+        let from = rays.o - V::splat(l, self.middle);
+        let shift = on_it.pick(zero, -(from.dot(rays.d) * self.near));
+        let o = self.object(l, from + rays.d * shift);
+        let d = self.object(l, rays.d);
+
+        // A t² + 2B t + C = 0, where q takes the value A t² + 2B t + C at o + t d. By Lagrange's identity the
+        // quadratic part of B² − AC is a form of o × d, which does not cancel for a small surface far away.
+        let (s, h) = (self.sign, self.slope);
+        let a = d.x * d.x + d.y * d.y * s + d.z * d.z;
+        let b = o.x * d.x + (o.y * s + h) * d.y + o.z * d.z;
+        let c = on_side.pick(zero, o.x * o.x + (o.y * s + 2.0 * h) * o.y + o.z * o.z + self.constant);
+        let m = o.cross(d);
+        let discriminant = -(m.x * m.x * s + m.y * m.y + m.z * m.z * s) - a * self.constant;
+        let root = on_side.pick(b.magnitude(), discriminant.root());
+        let q = -(b + root.signed_as(b));
+        let (first, second) = (c / q, q / a);
+        let crosses = first.le(first) & second.le(second);
+        let (near, far) = (first.lesser(second), first.greater(second));
+        // A may be zero of either sign: one root is then infinite, on the side that the sign tells.
+        let beyond = l.f(1.0).signed_as(a).lt(zero);
+        let all_inside = !crosses & c.lt(zero);
+
+        // Where the line is between the two planes.
+        let level = d.y.le(zero) & zero.le(d.y);
+        let between = l.f(self.ends[0]).le(o.y) & o.y.le(l.f(self.ends[1]));
+        let low = on_low.pick(-shift, (l.f(self.ends[0]) - o.y) / d.y);
+        let high = on_high.pick(-shift, (l.f(self.ends[1]) - o.y) / d.y);
+        let upwards = zero.lt(d.y);
+        let nothing = level & !between;
+        let enter = level.pick(nothing.pick(none, -none), upwards.pick(low, high));
+        let leave = level.pick(none, upwards.pick(high, low));
+
+        let side = l.u(place(slot, Face::Side));
+        let within = enter.le(near) & near.le(leave) & crosses;
+        let best = nearer(l, (none, side), near + shift, within, side);
+        let within = enter.le(far) & far.le(leave) & crosses;
+        let best = nearer(l, best, far + shift, within, side);
+        if !self.capped {
+            return best;
+        }
+        let (low_face, high_face) = (l.u(place(slot, Face::Low)), l.u(place(slot, Face::High)));
+        let inside = Inside::<L> { near, far, crosses, beyond, always: all_inside };
+        let best =
+            nearer(l, best, enter + shift, inside.holds(enter), upwards.pick_word(low_face, high_face));
+        nearer(l, best, leave + shift, inside.holds(leave), upwards.pick_word(high_face, low_face))
+    }
+
+    /// The point of a face next to a point that lies on it but for rounding, with the outward normal.
+    #[inline(always)]
+    pub fn point<L: Lanes>(&self, l: L, near: V<L>, face: Face) -> Points<L> {
+        let o = self.object(l, near - V::splat(l, self.middle));
+        let [x, y, z] = self.rows;
+        let (x, y, z) = (V::splat(l, x), V::splat(l, y), V::splat(l, z));
+        let (off, slope) = match face {
+            Face::Side => {
+                let half = V::<L>::new(o.x, o.y * self.sign + self.slope, o.z);
+                let q = half.dot(o) + o.y * self.slope + self.constant;
+                (q * 0.5, x * half.x + y * half.y + z * half.z)
+            }
+            Face::Low => (-(o.y - self.ends[0]), -y),
+            _ => (o.y - self.ends[1], y),
+        };
+        let squared = slope.squared();
+        // The normal of the side changes by too little over so small a step.
+        let n = slope * (l.f(1.0) / squared.root());
+        Points { p: near - slope * (off / squared), n, shading: n }
+    }
+}
 
 /// Where a line is inside a quadric: between its two roots, beyond them, or one and the same all along.
-#[derive(Clone, Copy)]
-enum Inside {
-    Between,
-    Beyond,
-    Always,
-    Never,
+struct Inside<L: Lanes> {
+    near: L::F,
+    far: L::F,
+    crosses: L::M,
+    beyond: L::M,
+    always: L::M,
 }
 
-/// Distances at which a line crosses a quadric, in order. Infinite or NaN where there is no such crossing.
-#[derive(Clone, Copy)]
-struct Crossings {
-    near: f64,
-    far: f64,
-    inside: Inside,
-}
-
-impl Crossings {
-    fn contains(&self, t: f64) -> bool {
-        match self.inside {
-            Inside::Between => self.near < t && t < self.far,
-            Inside::Beyond => t < self.near || self.far < t,
-            Inside::Always => true,
-            Inside::Never => false,
-        }
+impl<L: Lanes> Inside<L> {
+    #[inline(always)]
+    fn holds(&self, t: L::F) -> L::M {
+        let within = self.near.lt(t) & t.lt(self.far) & !self.beyond;
+        let without = (t.lt(self.near) | self.far.lt(t)) & self.beyond;
+        ((within | without) & self.crosses) | self.always
     }
 }
 
-/// The least distance above 0 and the face that is met there. The ray goes to object space with its direction
-/// not made a unit vector again, so that distances stay those of the world.
-///
-/// Whether a crossing belongs to the side or a cap is decided by comparing distances alone: a root counts if it
-/// lies within the stretch between the two planes, a plane's if it lies within the inside of the quadric. At
-/// the seam exactly one of the two holds, whatever was rounded, so a ray cannot slip in between.
-pub(super) fn intersect(quadric: &Quadric, ray: &Ray, start: Option<Face>) -> Option<(f64, Face)> {
-    let o = quadric.object_from_world.transform_point3(ray.origin);
-    let d = quadric.object_from_world.transform_vector3(ray.direction);
-    let crossings = crossings(quadric.form, o, d, start == Some(Face::Side));
-    let [(enter, enter_face), (leave, leave_face)] = stretch(quadric, o, d, start)?;
-
-    let mut nearest = (f64::INFINITY, Face::Side);
-    let mut consider = |t: f64, face: Face| {
-        if t > 0.0 && t < nearest.0 {
-            nearest = (t, face);
-        }
-    };
-    for t in [crossings.near, crossings.far] {
-        if enter <= t && t <= leave {
-            consider(t, Face::Side);
-        }
-    }
-    if quadric.capped {
-        for (t, face) in [(enter, enter_face), (leave, leave_face)] {
-            if crossings.contains(t) {
-                consider(t, face);
-            }
-        }
-    }
-    (nearest.0 < f64::INFINITY).then_some(nearest)
-}
-
-/// Solves A t² + 2B t + C = 0 where q takes the value A t² + 2B t + C at o + t d. A start on the surface makes C
-/// exactly zero.
-fn crossings(form: Form, o: DVec3, d: DVec3, on_it: bool) -> Crossings {
-    let (s, h) = (form.y_sign(), form.y_slope());
-    let a = d.x * d.x + s * d.y * d.y + d.z * d.z;
-    let b = o.x * d.x + (s * o.y + h) * d.y + o.z * d.z;
-    let (first, second, c) = if on_it {
-        (0.0, -2.0 * b / a, 0.0)
-    } else {
-        let c = form.q(o);
-        // B² − AC. By Lagrange's identity its quadratic part is a form of o × d, which does not cancel for a
-        // small surface far away; so is what the linear part of q adds to it.
-        let m = o.cross(d);
-        let linear = h * (2.0 * (d.x * m.z - d.z * m.x) + h * d.y * d.y);
-        let discriminant = linear - (s * m.x * m.x + m.y * m.y + s * m.z * m.z) - a * form.constant();
-        let q = -(b + discriminant.sqrt().copysign(b));
-        (c / q, q / a, c)
-    };
-    if first.is_nan() || second.is_nan() {
-        // No root at all, or a line that lies on the surface.
-        let inside = if c < 0.0 { Inside::Always } else { Inside::Never };
-        return Crossings { near: f64::NAN, far: f64::NAN, inside };
-    }
-    let (near, far) = if first < second { (first, second) } else { (second, first) };
-    // A may be zero of either sign: one root is then infinite, on the side that the sign tells.
-    Crossings { near, far, inside: if a.is_sign_negative() { Inside::Beyond } else { Inside::Between } }
-}
-
-/// Distances between which a line is between the quadric's two planes, each with the plane's face.
-fn stretch(quadric: &Quadric, o: DVec3, d: DVec3, start: Option<Face>) -> Option<[(f64, Face); 2]> {
-    if d.y == 0.0 {
-        let between = quadric.low <= o.y && o.y <= quadric.high;
-        return between.then_some([(f64::NEG_INFINITY, Face::Low), (f64::INFINITY, Face::High)]);
-    }
-    let distance = |y: f64, face: Face| if start == Some(face) { 0.0 } else { (y - o.y) / d.y };
-    let low = (distance(quadric.low, Face::Low), Face::Low);
-    let high = (distance(quadric.high, Face::High), Face::High);
-    Some(if d.y > 0.0 { [low, high] } else { [high, low] })
-}
-
-/// The point of a face next to a point that lies on it but for rounding, with the outward normal.
-pub(super) fn surface_point(quadric: &Quadric, near: DVec3, face: Face) -> SurfacePoint {
-    let mut p = quadric.object_from_world.transform_point3(near);
-    let gradient = match face {
-        Face::Side | Face::Wall(_) | Face::Triangle(_) => {
-            let slope = quadric.form.half_gradient(p);
-            let squared = slope.length_squared();
-            if squared.is_normal() {
-                p -= quadric.form.q(p) / (2.0 * squared) * slope;
-            }
-            let slope = quadric.form.half_gradient(p);
-            // In the apex of a cone there is no slope: it points along the axis, out of the part that is left.
-            let apex = if quadric.low < 0.0 { DVec3::Y } else { DVec3::NEG_Y };
-            if slope.length_squared().is_normal() { slope } else { apex }
-        }
-        Face::Low => {
-            p.y = quadric.low;
-            DVec3::NEG_Y
-        }
-        Face::High => {
-            p.y = quadric.high;
-            DVec3::Y
-        }
-    };
-    // Normals go by the inverse transpose.
-    let n = (quadric.object_from_world.matrix3.transpose() * gradient).normalize();
-    SurfacePoint::new(quadric.world_from_object.transform_point3(p), n)
+/// The nearer of what is met already and what is met here, if that counts and lies ahead.
+#[inline(always)]
+fn nearer<L: Lanes>(l: L, best: (L::F, L::U), t: L::F, counts: L::M, face: L::U) -> (L::F, L::U) {
+    let nearer = counts & l.f(0.0).lt(t) & t.lt(best.0);
+    (nearer.pick(t, best.0), nearer.pick_word(face, best.1))
 }

@@ -2,8 +2,9 @@
 
 use super::*;
 use crate::math::{asin, cos, sin};
-use crate::render::bsdf::{SMOOTH_ALPHA, fresnel};
-use crate::render::integrator::LEAST_COSINE;
+use crate::render::bsdf::SMOOTH_ALPHA;
+use crate::render::path::LEAST_COSINE;
+use adapter::Bsdf;
 
 fn toward(angle: f64) -> DVec3 {
     v(sin(angle), 0.0, cos(angle))
@@ -16,9 +17,9 @@ fn check_density(bsdf: &Bsdf) {
         let draw = |[lobe, a, b]: [f64; 3]| {
             let sample = bsdf.sample(wo, lobe, [a, b]).filter(|sample| !sample.specular)?;
             let (pdf, f) = (bsdf.pdf(wo, sample.wi), bsdf.eval(wo, sample.wi));
-            assert!((sample.pdf / pdf - 1.0).abs() < 1e-6, "{} {pdf}", sample.pdf);
+            assert!((sample.pdf / pdf - 1.0).abs() < 1e-3, "{} {pdf}", sample.pdf);
             assert!(
-                (sample.weight * pdf - f).abs().max_element() <= 1e-6 * f.max_element(),
+                (sample.weight * pdf - f).abs().max_element() <= 1e-3 * f.max_element(),
                 "{}",
                 sample.weight
             );
@@ -31,39 +32,39 @@ fn check_density(bsdf: &Bsdf) {
 #[test]
 fn samples_follow_their_density() {
     let color = Rgb::new(0.9, 0.6, 0.2);
-    check_density(&Bsdf::Diffuse(color));
+    let glass = |ior: f64, alpha: f64| Bsdf::glass(ior, alpha);
+    check_density(&Bsdf::of(Material::Diffuse { color: color.into() }));
     for alpha in [0.2, 0.5, 1.0] {
-        check_density(&Bsdf::Metal { color, alpha });
-        check_density(&Bsdf::Dielectric { eta: 1.5, alpha });
-        check_density(&Bsdf::Dielectric { eta: 1.0 / 1.5, alpha });
-        check_density(&Bsdf::Plastic { color, coat: &Coat::new(1.5, alpha) });
+        check_density(&Bsdf::of(Material::Metal { color: color.into(), alpha }));
+        check_density(&glass(1.5, alpha));
+        check_density(&glass(1.0 / 1.5, alpha));
+        check_density(&Bsdf::of(Material::Plastic { color: color.into(), ior: 1.5, alpha }));
     }
-    check_density(&Bsdf::Plastic { color, coat: &Coat::new(1.5, 0.0) });
+    check_density(&Bsdf::of(Material::Plastic { color: color.into(), ior: 1.5, alpha: 0.0 }));
 }
 
 #[test]
 fn reflection_is_the_same_both_ways() {
     let color = Rgb::new(0.9, 0.6, 0.2);
-    let (smooth, rough) = (Coat::new(1.5, 0.0), Coat::new(1.7, 0.3));
     let mut random = Random(4);
     for _ in 0..2000 {
-        let (a, b) = (warp::cosine(random.pair()), warp::cosine(random.pair()));
+        let (a, b) = (adapter::cosine(random.pair()), adapter::cosine(random.pair()));
         for bsdf in [
-            Bsdf::Metal { color, alpha: 0.3 },
-            Bsdf::Dielectric { eta: 1.5, alpha: 0.3 },
-            Bsdf::Plastic { color, coat: &smooth },
-            Bsdf::Plastic { color, coat: &rough },
+            Bsdf::of(Material::Metal { color: color.into(), alpha: 0.3 }),
+            Bsdf::glass(1.5, 0.3),
+            Bsdf::of(Material::Plastic { color: color.into(), ior: 1.5, alpha: 0.0 }),
+            Bsdf::of(Material::Plastic { color: color.into(), ior: 1.7, alpha: 0.3 }),
         ] {
             let (f, g) = (bsdf.eval(a, b) / b.z, bsdf.eval(b, a) / a.z);
-            assert!((f - g).abs().max_element() <= 1e-9 * f.max_element());
+            assert!((f - g).abs().max_element() <= 2e-4 * f.max_element() + 1e-6);
         }
         // Refracted radiance over the square of the index is the same both ways.
         let eta = 1.5;
         let w = v(b.x, b.y, -b.z);
-        let there = Bsdf::Dielectric { eta, alpha: 0.3 }.eval(a, w).x / b.z;
+        let there = Bsdf::glass(eta, 0.3).eval(a, w).x / b.z;
         let flip = |w: DVec3| v(w.x, w.y, -w.z);
-        let back = Bsdf::Dielectric { eta: 1.0 / eta, alpha: 0.3 }.eval(flip(w), flip(a)).x / a.z;
-        assert!((there * eta * eta - back).abs() <= 1e-9 * back, "{there} {back}");
+        let back = Bsdf::glass(1.0 / eta, 0.3).eval(flip(w), flip(a)).x / a.z;
+        assert!((there * eta * eta - back).abs() <= 2e-4 * back + 1e-6, "{there} {back}");
     }
 }
 
@@ -154,7 +155,7 @@ fn single_scattering_loses_what_its_integral_says() {
             assert_shows(&furnace(frosted, angle), 40_000, expected, 1e-3);
         }
     }
-    let smooth = Material::Metal { color: Rgb::splat(0.5).into(), alpha: 0.1 * SMOOTH_ALPHA };
+    let smooth = Material::Metal { color: Rgb::splat(0.5).into(), alpha: 0.1 * f64::from(SMOOTH_ALPHA) };
     assert_shows(&furnace(smooth, 0.9), 10, 0.5 + 0.5 * crate::math::pow(1.0 - cos(0.9), 5.0), 1e-9);
 }
 
@@ -178,7 +179,7 @@ fn glass_reflects_by_fresnel() {
     for ior in [1.33, 1.5, 2.4] {
         for angle in [0.0, 0.5, 1.0, 1.5] {
             let expected = fresnel_reflectance(cos(angle), ior);
-            assert!((fresnel::dielectric(cos(angle), ior).reflectance - expected).abs() < 1e-9);
+            assert!((adapter::fresnel(cos(angle), ior) - expected).abs() < 1e-6);
             // Ink behind the surface lets only the reflection through.
             let ink = Material::Dielectric { ior, absorption: Rgb::INFINITY, alpha: 0.0 };
             assert_shows(&furnace(ink, angle), 20_000, expected, 1e-9);
@@ -224,18 +225,17 @@ fn refraction_goes_where_snell_says() {
 #[test]
 fn grazing_directions_give_finite_light() {
     let color = Rgb::splat(0.5);
-    let (smooth, rough) = (Coat::new(1.5, 0.0), Coat::new(1.5, 0.3));
     let mut random = Random(6);
-    for z in [LEAST_COSINE, 1e-6, 1.0] {
+    for z in [f64::from(LEAST_COSINE), 1e-3, 1.0] {
         let wo = v((1.0 - z * z).sqrt(), 0.0, z);
         for bsdf in [
-            Bsdf::Metal { color, alpha: SMOOTH_ALPHA },
-            Bsdf::Metal { color, alpha: 1.0 },
-            Bsdf::Dielectric { eta: 1.5, alpha: SMOOTH_ALPHA },
-            Bsdf::Dielectric { eta: 0.1, alpha: 1.0 },
-            Bsdf::Dielectric { eta: 1.0 + 1e-9, alpha: 0.3 },
-            Bsdf::Plastic { color, coat: &smooth },
-            Bsdf::Plastic { color, coat: &rough },
+            Bsdf::of(Material::Metal { color: color.into(), alpha: f64::from(SMOOTH_ALPHA) }),
+            Bsdf::of(Material::Metal { color: color.into(), alpha: 1.0 }),
+            Bsdf::glass(1.5, f64::from(SMOOTH_ALPHA)),
+            Bsdf::glass(0.1, 1.0),
+            Bsdf::glass(1.0 + 1e-6, 0.3),
+            Bsdf::of(Material::Plastic { color: color.into(), ior: 1.5, alpha: 0.0 }),
+            Bsdf::of(Material::Plastic { color: color.into(), ior: 1.5, alpha: 0.3 }),
         ] {
             for _ in 0..2000 {
                 let Some(sample) = bsdf.sample(wo, random.next(), random.pair()) else { continue };

@@ -30,6 +30,59 @@ fn any_number_of_threads_gives_the_same_bits() {
     assert_eq!(films[0].film, films[2].film);
 }
 
+/// Scenes that between them take every branch there is.
+fn scenes_of_all_kinds() -> Vec<Scene> {
+    let mut crowd = scene(v(0.0, 3.0, 9.0), DVec3::ZERO).with(floor(), white()).with_sky(0.3);
+    let mut random = Random(17);
+    let color = || Rgb::new(0.9, 0.6, 0.2);
+    for i in 0..200 {
+        let at = v(random.within(-5.0, 5.0), 0.4, random.within(-5.0, 5.0));
+        let skewed = DMat3::from_diagonal(v(0.3, 0.4, 0.2));
+        let (shape, material) = match i % 8 {
+            0 => (sphere(at, 0.3), glass(1.5)),
+            1 => (sphere(at, 0.4), Material::Metal { color: color().into(), alpha: 0.2 }),
+            2 => (sphere(at, 0.3), Material::Plastic { color: color().into(), ior: 1.5, alpha: 0.1 }),
+            3 => (sphere(at, 0.3), Material::Dielectric { ior: 1.3, absorption: color(), alpha: 0.2 }),
+            4 => (
+                Shape::Quadric(quadric(Form::OneSheet, skewed, at, [-1.0, 1.0], true)),
+                Material::Plastic { color: color().into(), ior: 1.5, alpha: 0.0 },
+            ),
+            5 => (Shape::Box(placed(skewed, at)), white()),
+            6 => (Shape::Quadric(quadric(Form::Cone, skewed, at, [-1.0, 0.0], true)), glow(3.0)),
+            _ => (sphere(at, 0.2), Material::Mirror { color: color().into() }),
+        };
+        crowd = crowd.with(shape, material);
+    }
+    crowd.camera.half_extent = DVec2::splat(0.6);
+    crowd.camera.lens_radius = 0.05;
+    crowd.camera.focus = 9.0;
+    crowd.trace.filter = Filter::Gaussian;
+    crowd.trace.size = [24, 24];
+    let few = Scene { primitives: crowd.primitives[..30].to_vec(), ..crowd.clone() };
+    vec![small_room(), few, crowd]
+}
+
+#[test]
+fn any_number_of_lanes_gives_the_same_bits() {
+    for scene in scenes_of_all_kinds() {
+        let window = Window::whole(scene.trace.size);
+        let look = Tracer::new(&scene).on(Level::One).prepass();
+        let film = |level| {
+            let tracer = Tracer::new(&scene).on(level);
+            assert_eq!(tracer.prepass(), look, "{level:?}");
+            tracer
+                .render(window, Target::Samples(4), &look, SHOWN, &Control::new())
+                .expect("nobody cancels")
+                .film
+        };
+        let one = film(Level::One);
+        assert!((0..24).any(|x| one.mean(x, 12) != Rgb::ZERO));
+        for level in Level::ALL.into_iter().filter(|level| level.is_there()) {
+            assert!(film(level) == one, "{level:?} gives other bits than one lane");
+        }
+    }
+}
+
 #[test]
 fn a_crop_is_that_window_of_the_whole() {
     for filter in [Filter::Box, Filter::Tent, Filter::Gaussian, Filter::Mitchell] {

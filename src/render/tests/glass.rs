@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::math::exp;
-use crate::render::shape::Ray;
+use crate::render::media::Inside;
 
 fn tinted(ior: f64, absorption: f64) -> Material {
     Material::Dielectric { ior, absorption: Rgb::splat(absorption), alpha: 0.0 }
@@ -127,10 +127,10 @@ fn medium_at(p: DVec3, shapes: &[&Shape]) -> Option<usize> {
     }
     let dielectrics = Dielectrics::new(&scene);
     let mut inside = Inside::default();
-    let accel = Accel::new(&scene.primitives);
-    dielectrics.enter_at(&accel, &Ray { origin: p, direction: DVec3::Z, start: None }, &mut inside);
-    let left = dielectrics.transmission(&inside, 1.0).x;
-    (left < 1.0).then(|| (-crate::math::ln(left)).round() as usize - 1)
+    let exact = exact::Exact::new(&scene, &space::Space::new(DVec3::ZERO, 1.0));
+    dielectrics.enter_at(&exact, p, &mut inside);
+    let absorption = dielectrics.absorption(&inside).x;
+    (absorption > 0.0).then(|| absorption.round() as usize - 1)
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::math::{acos, cos, sin};
-use crate::render::light::{Receiver, Source};
-use crate::render::observer::Contribution;
+use crate::render::observer::{Contribution, Place};
+use crate::render::path::Sharing;
 
 /// A white floor seen from straight above, off to the side of the light.
 fn floor_below() -> Scene {
@@ -39,25 +39,6 @@ fn a_spot_shines_into_its_cone_alone() {
     let half = crate::math::acos(0.5 * (cos(0.2) + cos(0.5)));
     assert_shows(&below(spot(half, 0.2, 0.5)), 10, 0.125 / PI, 1e-6);
     assert_shows(&below(spot(2.5, PI, PI)), 10, 0.25 / PI, 1e-9);
-}
-
-#[test]
-fn a_spot_radiates_what_its_falloff_integrates_to() {
-    let mut random = Random(4);
-    for (inner, outer) in [(0.2, 0.2), (0.3, 0.45), (0.0, 1.0), (0.5 * PI, PI)] {
-        let scene = scene(DVec3::ZERO, DVec3::Z).with_light(spot(0.4, inner, outer));
-        let lights = Lights::new(&scene);
-        const N: u32 = 200_000;
-        let flux: f64 = (0..N)
-            .filter_map(|_| {
-                let receiver = Receiver { p: v(0.0, 2.0, 0.0) + random.direction(), n: None };
-                let (lamp, ..) = lights.choose(&receiver, 0.0, 0.5);
-                Some(lamp.sample(&receiver, 0.5, [0.5; 2])?.radiance.x * 4.0 * PI / f64::from(N))
-            })
-            .sum();
-        let expected = 2.0 * PI * (1.0 - 0.5 * (cos(inner) + cos(outer)));
-        assert!((flux / expected - 1.0).abs() < 0.05, "{inner} {outer}: {flux}, {expected}");
-    }
 }
 
 #[test]
@@ -183,69 +164,6 @@ fn gathering_and_finding_agree() {
             assert!(shared > 0.0);
         }
     }
-}
-
-#[test]
-fn directions_to_lights_have_their_density() {
-    let receiver = Receiver { p: DVec3::ZERO, n: Some(DVec3::Y) };
-    // Over cells of the sphere where the density is smooth; the silhouette of a quadric lamp is not, and is left
-    // to `gathering_and_finding_agree`.
-    for (name, scene) in lamps() {
-        if name == "several" || name.contains("open") {
-            continue;
-        }
-        let lights = Lights::new(&scene);
-        let total = lights.total(&receiver);
-        let accel = Accel::new(&scene.primitives[1..]);
-        let seen = |wi: DVec3| Ray { origin: receiver.p, direction: wi, start: None };
-        // What hides itself is drawn and then found hidden; the density counts what is seen.
-        let draw = |[choice, a, b]: [f64; 3]| {
-            let (lamp, _, part) = lights.choose(&receiver, total, choice);
-            let light = lamp.sample(&receiver, part, [a, b])?;
-            let first = accel.closest(&seen(light.wi)).map_or(f64::INFINITY, |hit| hit.t);
-            let visible = first >= light.distance * (1.0 - 1e-9);
-            if visible {
-                let source = lamp.source();
-                let pdf = density(&lights, &scene, &accel, &receiver, total, light.wi, source);
-                // Seen so nearly from its edge that the density is huge, a point is known to fewer digits.
-                let slack = 1e-5 + 1e-10 * light.pdf;
-                assert!((pdf / light.pdf - 1.0).abs() < slack, "{name}: {pdf} {}", light.pdf);
-            }
-            visible.then_some(light.wi)
-        };
-        let source =
-            if scene.lights.is_empty() { Source::Primitive(PrimitiveId(1)) } else { Source::Light(0) };
-        if matches!(name, "sky" | "sphere" | "sun") {
-            assert_density(draw, |wi| density(&lights, &scene, &accel, &receiver, total, wi, source));
-        } else {
-            let mut random = Random(9);
-            for _ in 0..5000 {
-                draw([random.next(), random.next(), random.next()]);
-            }
-        }
-    }
-}
-
-fn density(
-    lights: &Lights,
-    scene: &Scene,
-    accel: &Accel,
-    receiver: &Receiver,
-    total: f64,
-    wi: DVec3,
-    source: Source,
-) -> f64 {
-    let ray = Ray { origin: receiver.p, direction: wi, start: None };
-    if let Source::Light(_) = source {
-        let seen = lights.beyond(wi).any(|(seen, _)| seen == source);
-        return if seen { lights.pdf(source, receiver, total, wi, None) } else { 0.0 };
-    }
-    let Some(hit) = accel.closest(&ray) else { return 0.0 };
-    let point = shape::surface_point(&scene.primitives[1].shape, &ray, hit.t, hit.place.face);
-    if point.n.dot(wi) >= 0.0 {
-        return 0.0;
-    }
-    lights.pdf(source, receiver, total, wi, Some((&point, hit.place.face)))
 }
 
 #[test]

@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::asset::Mesh;
-use crate::render::shape::{Ray, intersect};
 use crate::scene::shape::Instance;
 use std::sync::Arc;
 
@@ -38,51 +37,6 @@ pub(super) fn mesh(mesh: &Arc<Mesh>, matrix: DMat3, at: DVec3, smooth: bool) -> 
 
 fn skewed() -> DMat3 {
     DMat3::from_cols(v(0.8, 0.5, 0.1), v(-0.4, 0.9, 0.2), v(0.1, -0.3, -1.2))
-}
-
-#[test]
-fn the_tree_of_a_mesh_finds_what_its_triangles_give() {
-    let ball = ball(4);
-    assert!(ball.is_closed() && ball.len() == 2048);
-    let shape = mesh(&ball, skewed(), v(0.3, -0.2, 0.1), true);
-    let scene = scene(DVec3::ZERO, DVec3::Z).with(shape.clone(), white());
-    let accel = Accel::new(&scene.primitives);
-    let mut random = Random(2);
-    let mut met = 0;
-    for _ in 0..4000 {
-        let mut ray = Ray { origin: random.point(2.0), direction: random.direction(), start: None };
-        assert_eq!(accel.contains(PrimitiveId(0), ray.origin), shape.contains(ray.origin));
-        // Through, from triangle to triangle.
-        while let Some((t, face)) = intersect(&shape, &ray, ray.start.map(|start| start.face)) {
-            let hit = accel.closest(&ray).expect("the tree finds it too");
-            assert_eq!((hit.t, hit.place.face), (t, face));
-            let point = shape::surface_point(&shape, &ray, t, face);
-            assert!(point.p.distance(ray.origin + t * ray.direction) < 1e-12);
-            let inside = shape.contains(ray.origin + 0.5 * t * ray.direction);
-            assert_eq!(point.n.dot(ray.direction) > 0.0, inside, "normals point out");
-            ray = Ray { origin: point.p, start: Some(hit.place), ..ray };
-            met += 1;
-        }
-        assert!(accel.closest(&ray).is_none());
-    }
-    assert!(met > 1000);
-}
-
-#[test]
-fn no_ray_passes_between_triangles() {
-    // Aimed at corners and edges from the middle, where sloppy tests see gaps.
-    let ball = ball(2);
-    let shape = mesh(&ball, DMat3::IDENTITY, DVec3::ZERO, false);
-    let mut random = Random(6);
-    for triangle in 0..ball.len() as u32 {
-        let [a, b, _] = ball.corners(triangle);
-        for share in [0.0, 0.5, random.next(), random.next()] {
-            for origin in [DVec3::ZERO, random.point(0.3)] {
-                let direction = (a + share * (b - a) - origin).normalize();
-                assert!(intersect(&shape, &Ray { origin, direction, start: None }, None).is_some());
-            }
-        }
-    }
 }
 
 #[test]

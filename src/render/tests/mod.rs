@@ -1,6 +1,7 @@
 //! Pictures whose value is known, and the statistics to check them by.
 
 mod acne;
+mod adapter;
 mod bsdfs;
 mod cameras;
 mod determinism;
@@ -137,10 +138,15 @@ fn measure(tracer: &Tracer, samples: u32) -> (f64, f64) {
     (mean, ((squares / count - mean * mean).max(0.0) / count).sqrt())
 }
 
+/// What paths in single precision may be wrong by, as a share: some dozens of roundings of 6e-8 a vertex, over many
+/// vertices.
+const SINGLE: f64 = 2e-5;
+
 /// Asserts that a scene shows a radiance, within five standard errors and a relative slack.
 #[track_caller]
 fn assert_shows(scene: &Scene, samples: u32, expected: f64, slack: f64) {
     let (mean, error) = measure(&Tracer::new(scene), samples);
+    let slack = slack.max(SINGLE);
     assert!(
         (mean - expected).abs() <= 5.0 * error + slack * expected.abs(),
         "shows {mean} ± {error}, expected {expected}"
@@ -194,7 +200,7 @@ impl Random {
     }
 
     fn direction(&mut self) -> DVec3 {
-        warp::sphere(self.pair())
+        adapter::cone(self.pair(), 2.0)
     }
 
     fn point(&mut self, extent: f64) -> DVec3 {
@@ -213,7 +219,7 @@ fn assert_density(mut draw: impl FnMut([f64; 3]) -> Option<DVec3>, pdf: impl Fn(
     let mut observed = vec![0u64; ACROSS * AROUND + 1];
     for _ in 0..DRAWS {
         let cell = draw([random.next(), random.next(), random.next()]).map_or(ACROSS * AROUND, |w| {
-            assert!((w.length() - 1.0).abs() < 1e-9 && pdf(w) > 0.0, "{w} has density {}", pdf(w));
+            assert!((w.length() - 1.0).abs() < 1e-5 && pdf(w) > 0.0, "{w} has density {}", pdf(w));
             let z = ((0.5 * (w.z + 1.0) * ACROSS as f64) as usize).min(ACROSS - 1);
             let turn = (crate::math::atan2(w.y, w.x) / (2.0 * PI)).rem_euclid(1.0);
             z * AROUND + ((turn * AROUND as f64) as usize).min(AROUND - 1)

@@ -3,13 +3,16 @@
 use super::*;
 use crate::render::film::scale_for;
 use crate::render::sampler::Pair;
+use adapter::pair;
 
 #[test]
 fn every_pair_is_a_net() {
-    for pair in [Pair::Film, Pair::Lens, Pair::Direction(0), Pair::Light(3), Pair::Choice(1000)] {
+    for (pair, vertex) in
+        [(Pair::Film, 0), (Pair::Lens, 0), (Pair::Direction, 0), (Pair::Light, 3), (Pair::Choice, 1000)]
+    {
         for (from, x) in [(0, 0), (0, 17), (256, 5)] {
             let points: Vec<[f64; 2]> =
-                (from..from + 256).map(|i| Sampler::new(3, x, 9, i).pair(pair)).collect();
+                (from..from + 256).map(|i| adapter::pair(3, [x, 9], i, pair, vertex)).collect();
             for bits in 0..=8u32 {
                 // 2^bits columns of 2^(8 − bits) rows: one point in each cell.
                 let mut seen = vec![false; 256];
@@ -29,13 +32,20 @@ fn every_pair_is_a_net() {
 #[test]
 fn dimensions_do_not_correlate() {
     const N: u32 = 1024;
-    let pairs =
-        [Pair::Film, Pair::Lens, Pair::Direction(0), Pair::Lobe(0), Pair::Light(0), Pair::Direction(1)];
+    let pairs = [
+        (Pair::Film, 0),
+        (Pair::Lens, 0),
+        (Pair::Direction, 0),
+        (Pair::Lobe, 0),
+        (Pair::Light, 0),
+        (Pair::Direction, 1),
+    ];
     let mut sums = [[0.0; 12]; 12];
     for pixel in 0..16 {
         for i in 0..N {
-            let sampler = Sampler::new(11, pixel % 4, pixel / 4, i);
-            let values: Vec<f64> = pairs.iter().flat_map(|pair| sampler.pair(*pair)).collect();
+            let at = [pixel % 4, pixel / 4];
+            let values: Vec<f64> =
+                pairs.iter().flat_map(|&(name, vertex)| pair(11, at, i, name, vertex)).collect();
             for (a, row) in sums.iter_mut().enumerate() {
                 for (b, sum) in row.iter_mut().enumerate() {
                     *sum += (values[a] - 0.5) * (values[b] - 0.5);
@@ -55,7 +65,7 @@ fn dimensions_do_not_correlate() {
 fn numbers_are_uniform_over_pixels_and_seeds() {
     let mut cells = vec![0u64; 64 * 64];
     for i in 0..400_000u32 {
-        let [x, y] = Sampler::new(u64::from(i % 7), i % 640, i / 640, 5).pair(Pair::Direction(2));
+        let [x, y] = pair(u64::from(i % 7), [i % 640, i / 640], 5, Pair::Direction, 2);
         cells[(x * 64.0) as usize * 64 + (y * 64.0) as usize] += 1;
     }
     assert_distributed(&cells, &vec![400_000.0 / 4096.0; 4096]);
@@ -63,11 +73,12 @@ fn numbers_are_uniform_over_pixels_and_seeds() {
 
 #[test]
 fn warps_have_their_density() {
-    assert_density(|u| Some(warp::cosine([u[0], u[1]])), |w| warp::cosine_pdf(w.z));
-    assert_density(|u| Some(warp::sphere([u[0], u[1]])), |_| warp::SPHERE_PDF);
+    let pi = std::f64::consts::PI;
+    assert_density(|u| Some(adapter::cosine([u[0], u[1]])), |w| w.z.max(0.0) / pi);
+    assert_density(|u| Some(adapter::cone([u[0], u[1]], 2.0)), |_| 0.25 / pi);
     // A cone whose edge lies on the edge of cells.
-    let pdf = |w: DVec3| if w.z > 0.5 { warp::cone_pdf(0.5) } else { 0.0 };
-    assert_density(|u| Some(warp::cone([u[0], u[1]], 0.5)), pdf);
+    let pdf = |w: DVec3| if w.z > 0.5 { 1.0 / pi } else { 0.0 };
+    assert_density(|u| Some(adapter::cone([u[0], u[1]], 0.5)), pdf);
 }
 
 #[test]

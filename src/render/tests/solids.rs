@@ -1,8 +1,7 @@
 //! Solids and discs of every kind: what holds of all of them, told without their equations.
 
 use super::*;
-use crate::render::light::Receiver;
-use crate::render::shape::{Ray, intersect, surface_point};
+use adapter::{Accel, Ray};
 
 /// A map that turns, shears, stretches and moves.
 fn skew() -> crate::math::DAffine3 {
@@ -39,109 +38,6 @@ fn solids_and_a_mesh() -> Vec<(&'static str, Shape)> {
     all
 }
 
-/// The first distance at which a ray goes into or out of a solid, by steps and bisection.
-fn march(shape: &Shape, ray: &Ray) -> Option<f64> {
-    const STEPS: u32 = 4000;
-    const FAR: f64 = 8.0;
-    let inside = |t: f64| shape.contains(ray.origin + t * ray.direction);
-    let step = FAR / f64::from(STEPS);
-    let change = (0..STEPS).map(|i| f64::from(i) * step).find(|t| inside(*t) != inside(t + step))?;
-    let (mut low, mut high) = (change, change + step);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if inside(middle) == inside(change) { low = middle } else { high = middle }
-    }
-    Some(0.5 * (low + high))
-}
-
-#[test]
-fn rays_meet_solids_where_a_march_goes_in_and_out() {
-    let mut random = Random(5);
-    for (name, shape) in solids() {
-        let (mut met, mut disputed) = (0, 0);
-        for _ in 0..1500 {
-            let ray = Ray { origin: random.point(2.0), direction: random.direction(), start: None };
-            let found = intersect(&shape, &ray, None);
-            match (found, march(&shape, &ray)) {
-                (None, None) => {}
-                (Some((t, face)), Some(s)) if (t - s).abs() < 1e-9 => {
-                    met += 1;
-                    let point = surface_point(&shape, &ray, t, face);
-                    let out = if shape.contains(ray.origin) { 1.0 } else { -1.0 };
-                    assert!(out * point.n.dot(ray.direction) > 0.0, "{name}: {face:?} faces the wrong way");
-                    assert!(shape.contains(point.p - 1e-7 * point.n), "{name} {face:?}");
-                    assert!(!shape.contains(point.p + 1e-7 * point.n), "{name} {face:?}");
-                }
-                // Corners that are thinner than a step.
-                _ => disputed += 1,
-            }
-        }
-        assert!(met > 50 && disputed < 8, "{name}: {met} met, {disputed} disputed");
-    }
-}
-
-/// Points on the surface of a lamp, as its sampling draws them.
-fn drawn(shape: &Shape, random: &mut Random, count: usize) -> Vec<DVec3> {
-    let scene = scene(DVec3::ZERO, DVec3::Z).with(shape.clone(), glow(1.0));
-    let lights = Lights::new(&scene);
-    let mut draw = || {
-        let receiver = Receiver { p: 20.0 * random.direction(), n: None };
-        let (lamp, _, part) = lights.choose(&receiver, 0.0, random.next());
-        Some(lamp.sample(&receiver, part, random.pair())?.target?.point.p)
-    };
-    (0..count).filter_map(|_| draw()).collect()
-}
-
-#[test]
-fn lamps_are_sampled_on_their_surface_within_tight_bounds() {
-    let mut random = Random(12);
-    let disk = ("disk", Shape::Disk(placed(skew().matrix3, skew().translation)));
-    for (name, shape) in solids_and_a_mesh().into_iter().chain([disk]) {
-        let bounds = shape.bounds().expect("it has an end");
-        let mut seen = crate::scene::shape::Bounds::EMPTY;
-        for p in drawn(&shape, &mut random, 40_000) {
-            seen = seen.union(crate::scene::shape::Bounds { min: p, max: p });
-        }
-        let slack = 1e-9 * bounds.size().length();
-        assert!((seen.min - bounds.min).min_element() > -slack, "{name}: {seen:?} {bounds:?}");
-        assert!((bounds.max - seen.max).min_element() > -slack, "{name}: {seen:?} {bounds:?}");
-        let gap = (seen.min - bounds.min).max(bounds.max - seen.max).max_element();
-        assert!(gap < 0.03 * bounds.size().max_element(), "{name}: {seen:?} {bounds:?}");
-    }
-}
-
-#[test]
-fn a_lamp_of_a_given_power_radiates_it() {
-    // Seen from all around at a distance, what a convex lamp of radiance 1 gives is π times its area.
-    const FAR: f64 = 1000.0;
-    let mut random = Random(40);
-    let disk = ("disk", Shape::Disk(placed(skew().matrix3, skew().translation)));
-    for (name, shape) in solids_and_a_mesh().into_iter().chain([disk]) {
-        if matches!(name, "tower" | "bowls") {
-            continue;
-        }
-        let scene = scene(DVec3::ZERO, DVec3::Z).with(shape.clone(), glow(1.0));
-        let lights = Lights::new(&scene);
-        let (mut sum, mut squares) = (0.0, 0.0);
-        const N: u32 = 40_000;
-        for _ in 0..N {
-            let receiver = Receiver { p: FAR * random.direction(), n: None };
-            let (lamp, _, part) = lights.choose(&receiver, 0.0, random.next());
-            let irradiance = lamp.sample(&receiver, part, random.pair()).map_or(0.0, |light| 1.0 / light.pdf);
-            let flux = irradiance * 4.0 * PI * FAR * FAR;
-            sum += flux / f64::from(N);
-            squares += flux * flux / f64::from(N);
-        }
-        let error = ((squares - sum * sum) / f64::from(N)).sqrt();
-        let sides = if shape.is_closed() { 1.0 } else { 2.0 };
-        let expected = PI * shape.area() * sides;
-        assert!(
-            (sum - expected).abs() < 5.0 * error + 2e-3 * expected,
-            "{name}: {sum} ± {error}, {expected}"
-        );
-    }
-}
-
 #[test]
 fn a_white_solid_in_a_white_world_is_not_to_be_seen() {
     for (name, shape) in
@@ -172,7 +68,7 @@ fn nothing_leaves_a_solid_from_the_inside() {
     let mut random = Random(9);
     for (name, shape) in solids_and_a_mesh() {
         let closed = scene(DVec3::ZERO, DVec3::Z).with(shape.clone(), white());
-        let accel = Accel::new(&closed.primitives);
+        let accel = Accel::of(&closed);
         let mut ray = (0..)
             .map(|_| random.point(1.2))
             .find(|p| shape.contains(*p))
@@ -181,10 +77,10 @@ fn nothing_leaves_a_solid_from_the_inside() {
         for bounce in 0..30_000 {
             let hit = accel.closest(&ray);
             let hit = hit.unwrap_or_else(|| panic!("{name}: bounce {bounce} left from {ray:?}"));
-            let point = surface_point(&shape, &ray, hit.t, hit.place.face);
+            let point = accel.point(&ray, &hit);
             assert!(point.n.dot(ray.direction) >= 0.0, "{name}: bounce {bounce} meets an outside");
             let (x, y) = crate::math::basis(-point.n);
-            let local = warp::cosine(random.pair());
+            let local = adapter::cosine(random.pair());
             let direction = (local.x * x + local.y * y - local.z * point.n).normalize();
             ray = Ray { origin: point.p, direction, start: Some(hit.place) };
         }

@@ -3,7 +3,9 @@
 use super::*;
 use crate::asset::Image;
 use crate::math::{DAffine3, cos, sin};
-use crate::render::shape::{Face, SurfacePoint};
+use crate::render::exact::SurfacePoint;
+use crate::render::path::Sharing;
+use crate::render::shape::Face;
 use crate::render::texture::{Spot, clouds, paint};
 use crate::scene::{FrameId, ImageId, Paint, Texture, TextureId};
 use std::sync::Arc;
@@ -22,7 +24,7 @@ fn painted(shape: Shape, texture: Texture, world_from_object: DAffine3) -> Scene
 }
 
 fn shown(scene: &Scene, face: Face, p: DVec3, n: DVec3) -> Rgb {
-    let point = SurfacePoint { p, n };
+    let point = SurfacePoint::new(p, n);
     let spot = Spot::new(scene, &scene.primitives[0], face, &point);
     paint(scene, Paint::Texture(TextureId(scene.textures.len() as u32 - 1)), &spot)
 }

@@ -3,8 +3,8 @@
 //! Built by the surface-area heuristic over binned centres (Ingo Wald, "On fast construction of SAH-based
 //! bounding volume hierarchies", 2007).
 
-use crate::math::DVec3;
-use crate::scene::shape::Bounds;
+use rt_lang::math::DVec3;
+use rt_lang::scene::shape::Bounds;
 
 /// The hierarchy.
 #[derive(Default)]

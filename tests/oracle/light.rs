@@ -9,9 +9,9 @@ mod surface;
 
 use super::shape::{Face, Place, SurfacePoint};
 use super::warp;
-use crate::color::{Rgb, luminance};
-use crate::math::{DVec3, PI, basis};
-use crate::scene::{Light, Material, Paint, PrimitiveId, Scene, Shape};
+use rt_lang::color::{Rgb, luminance};
+use rt_lang::math::{DVec3, PI, basis};
+use rt_lang::scene::{Light, Material, Paint, PrimitiveId, Scene, Shape};
 use panorama::Sky;
 use std::collections::BTreeMap;
 use surface::Glowing;
@@ -230,13 +230,13 @@ impl Lamp {
             Light::Point { position, intensity } => (intensity, Kind::Point { position }),
             Light::Spot { position, direction, intensity, inner, outer } => {
                 let [inner, outer] = [inner, outer].map(|angle| {
-                    let sine = crate::math::sin(0.5 * angle);
+                    let sine = rt_lang::math::sin(0.5 * angle);
                     2.0 * sine * sine
                 });
                 (intensity, Kind::Spot { position, cone: Cone { direction, inner, outer } })
             }
             Light::Sun { direction, irradiance, radius } => {
-                let sine = crate::math::sin(radius);
+                let sine = rt_lang::math::sin(radius);
                 let radiance = if sine > 0.0 { irradiance / (PI * sine * sine) } else { irradiance };
                 (radiance, Kind::Sun { direction, sine })
             }

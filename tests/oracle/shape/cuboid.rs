@@ -1,8 +1,8 @@
 //! Boxes: the cube [−1, 1]³ of object space, as three pairs of planes.
 
 use super::{Face, Ray, SurfacePoint, Wall};
-use crate::math::DVec3;
-use crate::scene::shape::Placed;
+use rt_lang::math::DVec3;
+use rt_lang::scene::shape::Placed;
 
 /// The least distance above 0 and the wall that is met there. A line is in the box between the last plane that it
 /// enters by and the first that it leaves by. The plane that the ray starts on is at distance 0 exactly: a ray

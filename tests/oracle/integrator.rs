@@ -13,9 +13,9 @@ use super::media::{Boundary, Inside};
 use super::observer::{Contribution, Observer, Vertex};
 use super::sampler::{Pair, Sampler};
 use super::shape::{Place, Ray, SurfacePoint, surface_point};
-use crate::color::Rgb;
-use crate::math::{DVec3, basis};
-use crate::scene::{Background, Material};
+use rt_lang::color::Rgb;
+use rt_lang::math::{DVec3, basis};
+use rt_lang::scene::{Background, Material};
 
 /// Vertices before roulette may end a path. It was measured to cost more than it saves at depth 8.
 const FIRST_ROULETTE: u32 = 16;
@@ -385,7 +385,7 @@ fn visibility(tracer: &Tracer, vertex: &LocalVertex, light: &LightSample, inside
 
 /// Which of the two ways to find a light counts. Both, shared; the others are for tests that compare them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(not(test), expect(dead_code, reason = "tests compare the ways"))]
+
 pub(super) enum Sharing {
     Both,
     OnlyGathered,

@@ -5,9 +5,9 @@
 
 use super::bvh::Hierarchy;
 use super::shape::{Face, Place, Ray, Tree, intersect};
-use crate::math::DVec3;
-use crate::scene::shape::Bounds;
-use crate::scene::{Primitive, PrimitiveId, Shape};
+use rt_lang::math::DVec3;
+use rt_lang::scene::shape::Bounds;
+use rt_lang::scene::{Primitive, PrimitiveId, Shape};
 use std::collections::BTreeMap;
 
 /// The hierarchy, over borrowed surfaces.

@@ -1,10 +1,10 @@
 //! Triangle meshes: each with a hierarchy of its own in object space, however often it stands in the scene.
 
 use super::{Face, Ray, SurfacePoint};
-use crate::asset::Mesh;
-use crate::math::{DVec2, DVec3};
-use crate::render::bvh::Hierarchy;
-use crate::scene::shape::{Bounds, Instance};
+use rt_lang::asset::Mesh;
+use rt_lang::math::{DVec2, DVec3};
+use crate::oracle::bvh::Hierarchy;
+use rt_lang::scene::shape::{Bounds, Instance};
 use std::sync::Arc;
 
 /// The hierarchy over the triangles of a mesh.

@@ -1,7 +1,7 @@
 //! Spheres.
 
 use super::Ray;
-use crate::math::DVec3;
+use rt_lang::math::DVec3;
 
 /// The least distance above 0. With o = origin − centre and b = −o·d it solves t² − 2bt + o·o − r² = 0. The
 /// discriminant is taken from the offset of the ray from the centre, which does not cancel for a small sphere

@@ -1,7 +1,7 @@
 //! Planes.
 
 use super::Ray;
-use crate::math::DVec3;
+use rt_lang::math::DVec3;
 
 /// The distance, if above 0. A ray that starts on a plane does not meet it again.
 #[inline]

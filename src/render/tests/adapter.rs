@@ -1,0 +1,185 @@
+//! The tracer's parts, asked for one ray of the world at a time.
+
+use super::*;
+use crate::render::exact::SurfacePoint;
+use crate::render::observer::Place;
+use crate::render::sampler::{Pair, Sampler, seed_key};
+use crate::render::shape::{NOWHERE, Rays, encode};
+use crate::render::space::double;
+use crate::render::vector::{V, single};
+
+/// A half-line of the world.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray {
+    pub origin: DVec3,
+    pub direction: DVec3,
+    pub start: Option<Place>,
+}
+
+/// What it meets.
+#[derive(Clone, Copy, Debug)]
+pub struct Hit {
+    pub t: f64,
+    pub place: Place,
+}
+
+/// The surfaces of a scene.
+pub struct Accel {
+    surfaces: Surfaces<'static>,
+    space: Space,
+}
+
+impl Accel {
+    pub fn of(scene: &Scene) -> Accel {
+        let scene: &'static Scene = Box::leak(Box::new(scene.clone()));
+        let space = Space::new(scene.camera.position, 1.0);
+        Accel { surfaces: Surfaces::new(scene, &space), space }
+    }
+
+    fn rays(&self, ray: &Ray) -> Rays<One> {
+        let (start, detail) =
+            ray.start.map_or((NOWHERE, 0), |start| encode(self.surfaces.slot(start.primitive), start.face));
+        Rays {
+            o: V::splat(One, single(self.space.point(ray.origin))),
+            d: V::splat(One, single(ray.direction)),
+            start: One.u(start),
+            detail: One.u(detail),
+        }
+    }
+
+    pub fn closest(&self, ray: &Ray) -> Option<Hit> {
+        let none = One.u(u32::MAX);
+        let hit = self.surfaces.closest(One, &self.rays(ray), f32::INFINITY, none, true);
+        let place = hit.place.get(0);
+        (place != NOWHERE).then(|| Hit {
+            t: f64::from(hit.t),
+            place: Place {
+                primitive: self.surfaces.primitive(slot(place)),
+                face: decode(place, hit.detail.get(0)),
+            },
+        })
+    }
+
+    pub fn occluded(&self, ray: &Ray, distance: f64) -> bool {
+        self.surfaces.occluded(One, &self.rays(ray), distance as f32, One.u(u32::MAX), true)
+    }
+
+    pub fn point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        let (place, detail) = encode(self.surfaces.slot(hit.place.primitive), hit.place.face);
+        let hits = Hits { t: hit.t as f32, place: One.u(place), detail: One.u(detail) };
+        let points = self.surfaces.points(One, &self.rays(ray), &hits, true);
+        SurfacePoint::new(self.space.world(points.p, 0), double(points.n, 0))
+    }
+}
+
+thread_local! {
+    static LAST: std::cell::RefCell<Option<(Shape, std::rc::Rc<Accel>)>> = const { std::cell::RefCell::new(None) };
+}
+
+/// The surface of one shape, kept for the next time.
+fn alone(shape: &Shape) -> std::rc::Rc<Accel> {
+    LAST.with_borrow_mut(|last| {
+        if let Some((known, accel)) = last
+            && known == shape
+        {
+            return accel.clone();
+        }
+        let accel =
+            std::rc::Rc::new(Accel::of(&scene(DVec3::ZERO, DVec3::Z).with(shape.clone(), glass(1.5))));
+        *last = Some((shape.clone(), accel.clone()));
+        accel
+    })
+}
+
+pub fn intersect(shape: &Shape, ray: &Ray, start: Option<Face>) -> Option<(f64, Face)> {
+    let start = start.map(|face| Place { primitive: PrimitiveId(0), face });
+    alone(shape).closest(&Ray { start, ..*ray }).map(|hit| (hit.t, hit.place.face))
+}
+
+pub fn surface_point(shape: &Shape, ray: &Ray, t: f64, face: Face) -> SurfacePoint {
+    alone(shape).point(ray, &Hit { t, place: Place { primitive: PrimitiveId(0), face } })
+}
+
+pub fn camera_rays(scene: &Scene, [x, y]: [u32; 2], count: u32) -> Vec<(Ray, f64)> {
+    let space = Space::new(scene.camera.position, 1.0);
+    let eye = Eye::new(scene, &space);
+    let ray = |i| {
+        let sampler = Sampler::new(One, seed_key(1), One.u(x), One.u(y), One.u(i));
+        let ray = eye.rays(One, One.u(x), One.u(y), &sampler);
+        let world = Ray { origin: space.world(ray.o, 0), direction: double(ray.d, 0), start: None };
+        (world, f64::from(ray.weight))
+    };
+    (0..count).map(ray).collect()
+}
+
+pub fn pair(seed: u64, [x, y]: [u32; 2], sample: u32, pair: Pair, vertex: u32) -> [f64; 2] {
+    let sampler = Sampler::new(One, seed_key(seed), One.u(x), One.u(y), One.u(sample));
+    sampler.pair(One, pair, One.u(vertex)).map(f64::from)
+}
+
+pub fn cosine(u: [f64; 2]) -> DVec3 {
+    double(warp::cosine(One, u.map(|u| u as f32)), 0)
+}
+
+pub fn cone(u: [f64; 2], height: f64) -> DVec3 {
+    double(warp::cone(One, u.map(|u| u as f32), height as f32), 0)
+}
+
+pub fn fresnel(cosine: f64, eta: f64) -> f64 {
+    f64::from(bsdf::fresnel::dielectric(One, cosine as f32, eta as f32).reflectance)
+}
+
+/// A material in one lane.
+pub struct Bsdf {
+    bsdf: bsdf::Bsdfs<One>,
+    materials: Materials,
+}
+
+/// A direction that it scatters to.
+#[derive(Debug)]
+pub struct Sample {
+    pub wi: DVec3,
+    pub weight: Rgb,
+    pub pdf: f64,
+    pub specular: bool,
+}
+
+impl Bsdf {
+    pub fn of(material: Material) -> Bsdf {
+        let scene = scene(DVec3::ZERO, DVec3::Z).with(floor(), material);
+        let materials = Materials::new(&scene, &Surfaces::new(&scene, &Space::new(DVec3::ZERO, 1.0)), 1.0);
+        let (bsdf, _) = materials.at(One, One.u(0), true);
+        Bsdf { bsdf, materials }
+    }
+
+    pub fn glass(eta: f64, alpha: f64) -> Bsdf {
+        let mut glass = Bsdf::of(Material::Dielectric { ior: 1.5, absorption: Rgb::ZERO, alpha });
+        glass.bsdf.eta = eta as f32;
+        glass
+    }
+
+    pub fn sample(&self, wo: DVec3, lobe: f64, u: [f64; 2]) -> Option<Sample> {
+        let wo = V::splat(One, single(wo));
+        let u = u.map(|u| u as f32);
+        let sample = self.bsdf.sample(One, &self.materials.coats, wo, lobe as f32, u, true);
+        sample.some.then(|| Sample {
+            wi: double(sample.wi, 0),
+            weight: double(sample.weight, 0),
+            pdf: f64::from(sample.pdf),
+            specular: sample.specular,
+        })
+    }
+
+    pub fn eval(&self, wo: DVec3, wi: DVec3) -> Rgb {
+        double(self.both(wo, wi).0, 0)
+    }
+
+    pub fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
+        f64::from(self.both(wo, wi).1)
+    }
+
+    fn both(&self, wo: DVec3, wi: DVec3) -> (V<One>, f32) {
+        let [wo, wi] = [wo, wi].map(|w| V::splat(One, single(w)));
+        self.bsdf.eval(One, &self.materials.coats, wo, wi, true)
+    }
+}

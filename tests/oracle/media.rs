@@ -1,0 +1,151 @@
+//! What a path is inside of.
+//!
+//! Dielectric solids nest. Where several overlap one of them is the medium, and a boundary does what parts the
+//! medium before it from the one behind it: often nothing (after Schmidt and Budge, "Simple nested dielectrics in
+//! ray traced images", JGT 2002). Among the solids around a point, those that contain another of them are out; of
+//! the rest the one declared last is the medium.
+//!
+//! A fixed order of all solids could not say that: let A lie in B, C stick out of both, and A, C, B be declared in
+//! this order. Then A wins over B, B over C, and C over A. So the medium is chosen for each set of solids anew.
+
+use rt_lang::color::Rgb;
+use rt_lang::math::exp;
+use crate::oracle::accel::Accel;
+use crate::oracle::shape::Ray;
+use rt_lang::scene::nesting::lies_in;
+use rt_lang::scene::shape::Bounds;
+use rt_lang::scene::{Material, PrimitiveId, Projection, Scene, Shape};
+
+/// The dielectric solids of a scene.
+pub struct Dielectrics<'s> {
+    scene: &'s Scene,
+    /// Those whose boundary may pass through the lens, or that contain it.
+    near_camera: Vec<PrimitiveId>,
+    /// Whether any has the index of vacuum, so that its boundary does nothing even outside of all others.
+    any_invisible: bool,
+}
+
+/// What a boundary does to a path that meets it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Boundary {
+    /// It parts nothing: the path goes straight on.
+    Nothing,
+    /// It reflects and refracts; the number is the refractive index behind it over the one before it.
+    Interface(f64),
+}
+
+/// The solids that a point of a path lies in, in the order of their declaration, and which of them is the medium.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Inside {
+    solids: Vec<PrimitiveId>,
+    medium: Option<PrimitiveId>,
+}
+
+impl<'s> Dielectrics<'s> {
+    /// Finds those of a scene.
+    pub fn new(scene: &'s Scene) -> Dielectrics<'s> {
+        let ids = (0..scene.primitives.len() as u32).map(PrimitiveId);
+        let solids: Vec<PrimitiveId> = ids.filter(|&id| ior(scene, id).is_some()).collect();
+        let any_invisible = solids.iter().any(|&id| ior(scene, id) == Some(1.0));
+        let near_camera = solids.into_iter().filter(|&id| may_reach_lens(scene, id)).collect();
+        Dielectrics { scene, near_camera, any_invisible }
+    }
+
+    /// Sets `inside` to the solids around the start of a camera ray.
+    pub fn enter_at(&self, accel: &Accel, ray: &Ray, inside: &mut Inside) {
+        inside.solids.clear();
+        inside.medium = None;
+        for &id in &self.near_camera {
+            if accel.contains(id, ray.origin) {
+                self.cross(inside, id, true);
+            }
+        }
+    }
+
+    /// What the surface of a dielectric does to a path that enters or leaves it.
+    pub fn boundary(&self, inside: &Inside, id: PrimitiveId, entering: bool) -> Boundary {
+        let others = || inside.solids.iter().copied().filter(|&solid| solid != id);
+        let without = self.medium(others);
+        // An open surface bounds no medium: it refracts where there is no other, and does nothing within one.
+        let within =
+            if self.is_solid(id) { self.medium(|| others().chain([id])) } else { without.or(Some(id)) };
+        let index = |medium: Option<PrimitiveId>| medium.and_then(|id| ior(self.scene, id)).unwrap_or(1.0);
+        let (within, without) = (index(within), index(without));
+        if within == without {
+            return Boundary::Nothing;
+        }
+        Boundary::Interface(if entering { within / without } else { without / within })
+    }
+
+    /// Takes a path through the surface of a solid. An open surface bounds no medium.
+    pub fn cross(&self, inside: &mut Inside, id: PrimitiveId, entering: bool) {
+        if !self.is_solid(id) {
+            return;
+        }
+        match (entering, inside.solids.binary_search(&id)) {
+            (true, Err(place)) => inside.solids.insert(place, id),
+            (false, Ok(place)) => {
+                inside.solids.remove(place);
+            }
+            _ => return,
+        }
+        inside.medium = self.medium(|| inside.solids.iter().copied());
+    }
+
+    /// The share of light that is left after a distance in the medium (Beer and Lambert).
+    pub fn transmission(&self, inside: &Inside, distance: f64) -> Rgb {
+        let medium = inside.medium.map(|id| self.scene.material(&self.scene.primitives[id.0 as usize]));
+        let Some(Material::Dielectric { absorption, .. }) = medium else { return Rgb::ONE };
+        // Neither a clear medium without end nor an opaque one without depth is 0 × ∞.
+        let channel = |sigma: f64| if sigma == 0.0 || distance == 0.0 { 1.0 } else { exp(-sigma * distance) };
+        Rgb::new(channel(absorption.x), channel(absorption.y), channel(absorption.z))
+    }
+
+    /// Whether a straight line may cross a boundary that does nothing.
+    pub fn may_pass(&self, inside: &Inside) -> bool {
+        self.any_invisible || !inside.solids.is_empty()
+    }
+
+    /// Which of the solids around a point is the medium there.
+    fn medium<I: Iterator<Item = PrimitiveId>>(&self, solids: impl Fn() -> I) -> Option<PrimitiveId> {
+        let contains_none = |&outer: &PrimitiveId| !solids().any(|inner| self.contains(outer, inner));
+        // Containment runs in no circle, so there is always one that contains no other.
+        solids().filter(contains_none).max()
+    }
+
+    /// Whether one solid lies in another and the other not in it.
+    fn contains(&self, outer: PrimitiveId, inner: PrimitiveId) -> bool {
+        let (a, b) = (self.shape(outer), self.shape(inner));
+        outer != inner && lies_in(b, a) && !lies_in(a, b)
+    }
+
+    fn is_solid(&self, id: PrimitiveId) -> bool {
+        ior(self.scene, id).is_some() && self.shape(id).is_closed()
+    }
+
+    fn shape(&self, id: PrimitiveId) -> &'s Shape {
+        &self.scene.primitives[id.0 as usize].shape
+    }
+}
+
+/// The refractive index of a primitive, if it is a dielectric.
+fn ior(scene: &Scene, id: PrimitiveId) -> Option<f64> {
+    match scene.material(&scene.primitives[id.0 as usize]) {
+        Material::Dielectric { ior, .. } => Some(*ior),
+        _ => None,
+    }
+}
+
+fn may_reach_lens(scene: &Scene, id: PrimitiveId) -> bool {
+    let camera = &scene.camera;
+    // Filters reach two pixels beyond the edge of the picture, which is one pixel wide at least.
+    let reach = match camera.projection {
+        Projection::Perspective => camera.lens_radius,
+        Projection::Orthographic => 5.0 * camera.half_extent.length(),
+    };
+    let lens = Bounds { min: camera.position - reach, max: camera.position + reach };
+    scene.primitives[id.0 as usize]
+        .shape
+        .bounds()
+        .is_none_or(|bounds| bounds.min.cmple(lens.max).all() && lens.min.cmple(bounds.max).all())
+}
