@@ -3,11 +3,10 @@
 //! A case is named after the code it is about, which is then the only one it gives.
 
 use crate::folder::Folder;
-use rt_lang::compile;
 use rt_lang::diagnostic::Code;
-use rt_lang::lower::Overrides;
 use rt_lang::report::{self, Style};
 use rt_lang::source::{Source, Sources};
+use rt_lang::{Options, compile};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
@@ -24,7 +23,7 @@ fn slips_are_reported() {
             let text = std::fs::read_to_string(path).unwrap();
             let mut sources = Sources::default();
             let id = sources.add(Source::new(name, text));
-            let compiled = compile(&sources, id, &Overrides::default(), &Folder::of(path));
+            let compiled = compile(&Folder::of(path), &mut sources, id, &Options::default());
             let codes: BTreeSet<&str> = compiled.diagnostics.iter().map(|d| d.code.as_str()).collect();
             if let Some(code) =
                 name.split('-').next().filter(|word| Code::ALL.iter().any(|c| c.as_str() == *word))

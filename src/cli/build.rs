@@ -8,13 +8,13 @@ use super::target::{Staged, Target};
 use super::terminal::Terminal;
 use super::{Exit, Problem};
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use rt_lang::compile;
 use rt_lang::diagnostic::Severity;
 use rt_lang::files::NoFiles;
 use rt_lang::lower::Overrides;
 use rt_lang::output::{Depth, Facts, Format, Picture, encode};
 use rt_lang::render::{Cancelled, Control, Rendered, Shown, Tracer, Window};
 use rt_lang::scene::{self, Scene};
+use rt_lang::{Options, compile};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -147,12 +147,13 @@ fn same(path: &Path) -> PathBuf {
 fn build(context: &Context, job: &Job) -> Result<Exit, Problem> {
     let Context { arguments, terminal, .. } = *context;
     let start = Instant::now();
-    let input = input::read(&job.scene)?;
+    let mut input = input::read(&job.scene)?;
     if let Some(refused) = input.refused {
         terminal.diagnostics(&[refused], &input.sources);
         return Ok(Exit::Diagnostics);
     }
-    let mut compiled = compile(&input.sources, input.id, &overrides(arguments), &NoFiles);
+    let options = Options { overrides: overrides(arguments), ..Options::default() };
+    let mut compiled = compile(&NoFiles, &mut input.sources, input.id, &options);
     if arguments.quiet {
         compiled.diagnostics.retain(|diagnostic| diagnostic.severity() == Severity::Error);
     }

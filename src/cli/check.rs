@@ -4,10 +4,9 @@ use super::Exit;
 use super::args::Check;
 use super::input;
 use super::terminal::Terminal;
-use rt_lang::compile;
 use rt_lang::diagnostic::any_errors;
 use rt_lang::files::NoFiles;
-use rt_lang::lower::Overrides;
+use rt_lang::{Options, compile};
 use std::path::Path;
 
 /// Checks every file, also those behind one that fails.
@@ -17,7 +16,7 @@ pub fn run(arguments: &Check, terminal: Terminal) -> Exit {
 }
 
 fn check(file: &Path, terminal: Terminal) -> Exit {
-    let input = match input::read(file) {
+    let mut input = match input::read(file) {
         Ok(input) => input,
         Err(problem) => {
             terminal.problem(&problem);
@@ -26,7 +25,7 @@ fn check(file: &Path, terminal: Terminal) -> Exit {
     };
     let diagnostics = match input.refused {
         Some(refused) => vec![refused],
-        None => compile(&input.sources, input.id, &Overrides::default(), &NoFiles).diagnostics,
+        None => compile(&NoFiles, &mut input.sources, input.id, &Options::default()).diagnostics,
     };
     terminal.diagnostics(&diagnostics, &input.sources);
     if any_errors(&diagnostics) { Exit::Diagnostics } else { Exit::Done }
