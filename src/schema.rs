@@ -4,6 +4,7 @@
 //! `kinds!` table also yields a module a kind (`sphere::RADIUS`, …) with a typed key a field.
 
 pub mod familiar;
+pub mod textures;
 mod types;
 
 use crate::units;
@@ -90,6 +91,10 @@ types! {
     Bool = FieldType::Bool;
     /// A linear colour.
     Color = FieldType::Color;
+    /// A colour or a texture.
+    Paint = FieldType::Paint;
+    /// A text.
+    Text = FieldType::Text;
     /// Three lengths.
     Point = FieldType::Tuple(3, units::LENGTH);
     /// Three numbers.
@@ -277,10 +282,57 @@ kinds! {
         AXES "axes": Point = Required, POSITIVE;
         /// Two bowls, or one tower.
         SHEETS "sheets": Int = Value("2"), within(1.0, 2.0);
-        /// Keeps |y| ≤ height/2 and closes it with flat caps.
+        /// Keeps |y| ≤ height/2 and closes it with flat caps: its middle is at the origin.
         HEIGHT "height": Length = Absent("without end"), POSITIVE;
         /// Leaves the caps away.
         OPEN "open": Bool = Value("false"), ANY;
+    }
+
+    /// A bowl about the y axis with its vertex at the origin, opening upwards: y = height · (x² + z²) / radius².
+    /// It stands on its origin, and ends at y = height.
+    Shape paraboloid "paraboloid" {
+        /// Of the rim, at y = height.
+        RADIUS "radius": Length = Required, POSITIVE;
+        /// From the vertex to the rim.
+        HEIGHT "height": Length = Required, POSITIVE;
+        /// Leaves the flat cap over the rim away.
+        OPEN "open": Bool = Value("false"), ANY;
+    }
+
+    /// A cone about the y axis. It stands on its origin: the base is at y = 0, the apex at y = height.
+    Shape cone "cone" {
+        /// Of the base.
+        RADIUS "radius": Length = Required, POSITIVE;
+        /// From the base to the apex.
+        HEIGHT "height": Length = Required, POSITIVE;
+        /// The radius at y = height, of a cone that is cut off before its apex; it may exceed `radius`.
+        TOP "top": Length = Value("0"), NOT_NEGATIVE;
+        /// Leaves the flat caps away.
+        OPEN "open": Bool = Value("false"), ANY;
+    }
+
+    /// A cylinder about the y axis. It stands on its origin, from y = 0 to y = height.
+    Shape cylinder "cylinder" {
+        /// From the axis to the side.
+        RADIUS "radius": Length = Required, POSITIVE;
+        /// From the lower end to the upper.
+        HEIGHT "height": Length = Required, POSITIVE;
+        /// Leaves the flat caps away: a pipe with a wall of no thickness.
+        OPEN "open": Bool = Value("false"), ANY;
+    }
+
+    /// A flat disc about its origin. It encloses nothing; as an emitter it glows on both sides.
+    Shape disk "disk" {
+        /// From the centre to the rim.
+        RADIUS "radius": Length = Required, POSITIVE;
+        /// Perpendicular to it. Need not be of length 1.
+        NORMAL "normal": Vector = Value("(0, 1, 0)"), ANY;
+    }
+
+    /// A box with its middle at the origin and its edges along the axes.
+    Shape cuboid "box" {
+        /// Edge lengths along x, y and z.
+        SIZE "size": Point = Required, POSITIVE;
     }
 
     /// An endless plane through its origin. The solid half-space lies behind the normal.
@@ -295,13 +347,13 @@ kinds! {
     /// Lambertian: scatters evenly, like plaster or paper. The report's opaque material.
     Material diffuse "diffuse" {
         /// Reflectance.
-        COLOR "color": Color = Value(DEFAULT_COLOR), REFLECTANCE;
+        COLOR "color": Paint = Value(DEFAULT_COLOR), REFLECTANCE;
     }
 
     /// A perfect mirror. The report's specular material.
     Material mirror "mirror" {
         /// Reflectance, the same at every angle.
-        COLOR "color": Color = Value("#f8f8f8"), REFLECTANCE;
+        COLOR "color": Paint = Value("#f8f8f8"), REFLECTANCE;
     }
 
     /// Glass, water and the like: refraction by Snell's law, reflection by Fresnel's equations. The report's
@@ -320,7 +372,7 @@ kinds! {
     /// A conductor: GGX microfacets, single scattering, with Schlick's Fresnel term.
     Material metal "metal" {
         /// Reflectance at normal incidence.
-        COLOR "color": Color = Value("#e0e0e0"), REFLECTANCE;
+        COLOR "color": Paint = Value("#e0e0e0"), REFLECTANCE;
         /// From 0, polished, to 1, rough (GGX with α = roughness²).
         ROUGHNESS "roughness": Number = Value("0"), within(0.0, 1.0);
     }
@@ -328,7 +380,7 @@ kinds! {
     /// A clear coat over a diffuse base; light reflected inside the coat is counted.
     Material plastic "plastic" {
         /// Reflectance of the base.
-        COLOR "color": Color = Value(DEFAULT_COLOR), REFLECTANCE;
+        COLOR "color": Paint = Value(DEFAULT_COLOR), REFLECTANCE;
         /// Refractive index of the coat.
         IOR "ior": Number = Value("1.5"), within(1.0, 10.0);
         /// Of the coat: from 0, polished, to 1, rough (GGX with α = roughness²).
@@ -337,8 +389,8 @@ kinds! {
 
     /// Glows, and reflects nothing. A closed shape glows outwards, an open one on both sides.
     Material emitter "emitter" rules [Rule::ExactlyOne(&["power", "radiance"])] {
-        /// Multiplies the power or the radiance.
-        COLOR "color": Color = Value("white"), NOT_NEGATIVE;
+        /// Multiplies the power or the radiance. A texture needs `radiance`: the power of what it leaves is not known.
+        COLOR "color": Paint = Value("white"), NOT_NEGATIVE;
         /// Radiated by the whole surface, on both sides where it is open.
         POWER "power": Power = Absent("from `radiance`"), NOT_NEGATIVE;
         /// Per steradian.
@@ -370,9 +422,14 @@ kinds! {
     }
 
     /// Light from everywhere beyond the scene; what is seen where nothing stands.
-    Light sky "sky" {
+    Light sky "sky" rules [Rule::Excludes("image", &["color"]), Rule::Needs("turn", "image")] {
         /// Multiplies the radiance.
         COLOR "color": Color = Value("white"), NOT_NEGATIVE;
+        /// A picture of all directions (longitude across, latitude down), as PNG, JPEG, WebP, HDR or EXR. It
+        /// multiplies the radiance. Its centre lies at −z, its top at +y.
+        IMAGE "image": Text = Absent("one `color`"), ANY;
+        /// Turns the picture about the y axis, as `turn(y: …)` does a thing: by 90deg its centre lies at −x.
+        TURN "turn": Angle = Value("0"), ANY;
         /// Per steradian.
         RADIANCE "radiance": Radiance = Value("1W/m2"), NOT_NEGATIVE;
     }

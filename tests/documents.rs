@@ -1,12 +1,12 @@
 //! What the documents say is true: their examples compile, and their tables are the compiler's own.
 //! `INSTA_UPDATE=always cargo test` writes the tables anew.
 
+use crate::folder::Folder;
 use rt_lang::check::Function;
 use rt_lang::diagnostic::{Code, Severity};
-use rt_lang::lower::Overrides;
 use rt_lang::schema::{Category, Field, FieldType, KINDS, KindId, PLACED, Preset};
 use rt_lang::source::{Source, Sources};
-use rt_lang::{color, compile, units};
+use rt_lang::{Options, color, compile, units};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -193,7 +193,7 @@ fn every_scene_in_examples_compiles_without_a_warning() {
 fn compiles(name: &str, text: &str) {
     let mut sources = Sources::default();
     let id = sources.add(Source::new(name, text));
-    let compiled = compile(&sources, id, &Overrides::default());
+    let compiled = compile(&Folder(root().join("docs")), &mut sources, id, &Options::default());
     assert!(compiled.diagnostics.is_empty(), "{name}:\n{text}\n{:#?}", compiled.diagnostics);
     assert!(compiled.scene.is_some(), "{name}");
 }

@@ -2,7 +2,9 @@
 
 use rt_lang::diagnostic::{Diagnostic, Label};
 use rt_lang::span::Span;
-use rt_lang::syntax::ast::{Body, Construct, Entry, Expr, ExprKind, File, Name, Statement};
+use rt_lang::syntax::ast::{
+    Argument, Body, Construct, Entry, Expr, ExprKind, File, Name, Path, Statement, StatementKind, TypeName,
+};
 use std::fmt::Write;
 
 /// A tree, one node a line, each with the text it covers.
@@ -58,20 +60,87 @@ impl Dump<'_> {
     }
 
     fn statement(&mut self, statement: &Statement) {
-        match statement {
-            Statement::Thing { name, construct } => {
+        if let Some(doc) = &statement.doc {
+            writeln!(self.out, "{}doc {doc:?}", "  ".repeat(self.indent.min(12)))
+                .expect("a string takes any text");
+        }
+        for prefix in &statement.prefixes {
+            self.line(&format!("@{}", named(self.text, &prefix.name)), prefix.span);
+            self.inside(|dump| prefix.arguments.iter().for_each(|arguments| dump.arguments(arguments)));
+        }
+        self.statement_kind(&statement.kind, statement.span);
+    }
+
+    fn statement_kind(&mut self, kind: &StatementKind, span: Span) {
+        match kind {
+            StatementKind::Thing { name, construct } => {
                 let name = name.as_ref().map_or("-", |name| named(self.text, name));
                 self.construct(&format!("thing {name} = "), construct);
             }
-            Statement::Definition { keyword, name, value, span } => {
-                self.line(&format!("{keyword:?} {}", named(self.text, name)), *span);
+            StatementKind::Definition { keyword, name, value } => {
+                self.line(&format!("{keyword:?} {}", named(self.text, name)), span);
                 self.inside(|dump| dump.expr("", value));
+            }
+            StatementKind::Param { name, ty, default, range } => {
+                self.line(&format!("param {}: {}", named(self.text, name), type_name(ty)), span);
+                self.inside(|dump| {
+                    dump.expr("= ", default);
+                    range.iter().for_each(|range| dump.expr("in ", range));
+                });
+            }
+            StatementKind::Part { name, body } => {
+                self.line(&format!("part {}", named(self.text, name)), span);
+                self.inside(|dump| dump.body(body));
+            }
+            StatementKind::Import { path, name } => {
+                self.line(&format!("import {:?} as {}", path.text, name.text), span);
+            }
+            StatementKind::Function { name, parameters, result, value } => {
+                let parameter = |p: &rt_lang::syntax::ast::Parameter| {
+                    format!("{}: {}", named(self.text, &p.name), type_name(&p.ty))
+                };
+                let parameters: Vec<String> = parameters.iter().map(parameter).collect();
+                let (name, result) = (named(self.text, name), type_name(result));
+                self.line(&format!("fn {name}({}) -> {result}", parameters.join(", ")), span);
+                self.inside(|dump| dump.expr("", value));
+            }
+            StatementKind::For { variable, list, body } => {
+                self.line(&format!("for {}", named(self.text, variable)), span);
+                self.inside(|dump| {
+                    dump.expr("in ", list);
+                    dump.body(body);
+                });
+            }
+            StatementKind::If { condition, then, otherwise } => {
+                self.line("if", span);
+                self.inside(|dump| {
+                    dump.expr("", condition);
+                    dump.inside(|dump| dump.body(then));
+                    if let Some(otherwise) = otherwise {
+                        dump.line("else", otherwise.span);
+                        dump.inside(|dump| dump.body(otherwise));
+                    }
+                });
+            }
+            StatementKind::Assert { condition, message } => {
+                self.line("assert", span);
+                self.inside(|dump| {
+                    dump.expr("", condition);
+                    message.iter().for_each(|message| dump.expr("message ", message));
+                });
             }
         }
     }
 
+    fn arguments(&mut self, arguments: &[Argument]) {
+        for argument in arguments {
+            let name = argument.name.as_ref().map_or(String::new(), |name| format!("{}: ", name.text));
+            self.expr(&name, &argument.value);
+        }
+    }
+
     fn construct(&mut self, before: &str, construct: &Construct) {
-        self.line(&format!("{before}{} {{}}", named(self.text, &construct.kind)), construct.span);
+        self.line(&format!("{before}{} {{}}", path(self.text, &construct.kind)), construct.span);
         assert!(construct.span.contains(construct.body.span));
         self.inside(|dump| dump.body(&construct.body));
     }
@@ -101,13 +170,27 @@ impl Dump<'_> {
                 self.inside(|dump| dump.expr("", value));
             }
             ExprKind::Call { function, arguments } => {
-                line(format!("call {}", function.text));
+                let names = std::iter::once(&function.first).chain(&function.rest);
+                line(format!("call {}", names.map(|name| name.text.as_str()).collect::<Vec<_>>().join(".")));
+                self.inside(|dump| dump.arguments(arguments));
+            }
+            ExprKind::List(values) => {
+                line("list".into());
+                self.inside(|dump| values.iter().for_each(|value| dump.expr("", value)));
+            }
+            ExprKind::Index { value, index } => {
+                line("index".into());
                 self.inside(|dump| {
-                    for argument in arguments {
-                        let name =
-                            argument.name.as_ref().map_or(String::new(), |name| format!("{}: ", name.text));
-                        dump.expr(&name, &argument.value);
-                    }
+                    dump.expr("", value);
+                    dump.expr("at ", index);
+                });
+            }
+            ExprKind::If { condition, then, otherwise } => {
+                line("if".into());
+                self.inside(|dump| {
+                    dump.expr("", condition);
+                    dump.expr("then ", then);
+                    dump.expr("else ", otherwise);
                 });
             }
             ExprKind::Member { value, member } => {
@@ -127,6 +210,19 @@ impl Dump<'_> {
                 });
             }
         }
+    }
+}
+
+fn path(text: &str, path: &Path) -> String {
+    let names = std::iter::once(&path.first).chain(&path.rest);
+    names.map(|name| named(text, name)).collect::<Vec<_>>().join(".")
+}
+
+fn type_name(ty: &TypeName) -> String {
+    match ty {
+        TypeName::Named(name) => name.text.to_string(),
+        TypeName::List(inner, _) => format!("[{}]", type_name(inner)),
+        TypeName::Invalid(_) => "invalid".into(),
     }
 }
 

@@ -6,6 +6,7 @@ mod architecture;
 mod command;
 mod diagnostics;
 mod documents;
+mod folder;
 mod dump;
 mod parse;
 mod pictures;

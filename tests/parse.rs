@@ -4,7 +4,7 @@ use crate::dump;
 use proptest::prelude::*;
 use rt_lang::diagnostic::{Code, Diagnostic};
 use rt_lang::span::SourceId;
-use rt_lang::syntax::ast::{Body, Entry, ExprKind, File, Statement};
+use rt_lang::syntax::ast::{Body, Entry, ExprKind, File, StatementKind, TypeName};
 use rt_lang::syntax::{parse, parse_expression};
 use std::time::{Duration, Instant};
 
@@ -151,6 +151,10 @@ fn limits_are_said_once() {
         format!("let a = 1{}", " + 1".repeat(5_000)),
         format!("let a = b{}", ".c".repeat(5_000)),
         format!("let a = {}", "<".repeat(100_000)),
+        format!("let a = {}", "if ".repeat(100_000)),
+        format!("let a = {}1", "if a then b else ".repeat(100_000)),
+        format!("if a {{}} {}", "else if a {} ".repeat(100_000)),
+        format!("let a = b{}", "[0]".repeat(5_000)),
     ] {
         let (_, diagnostics) = on_small_stack(text.clone());
         let start: String = text.chars().take(40).collect();
@@ -172,6 +176,22 @@ fn time_is_in_proportion_to_the_text() {
         "(",
         "{",
         "[",
+        "if ",
+        "if a {",
+        "if a then ",
+        "if a then b else ",
+        "for i in ",
+        "for i in x {\n",
+        "param a: [",
+        "fn f(",
+        "part p {\n",
+        "@off\n",
+        "@a(",
+        "/// a\n",
+        "assert a, ",
+        "a[",
+        "import ",
+        "else ",
         "<",
         "\"",
         "/*",
@@ -241,10 +261,7 @@ fn start_of(entry: &Entry) -> u32 {
     match entry {
         Entry::Field(field) => field.name.span.start,
         Entry::Broken(broken) => broken.span.start,
-        Entry::Statement(statement) => match statement.as_ref() {
-            Statement::Thing { construct, .. } => construct.span.start,
-            Statement::Definition { span, .. } => span.start,
-        },
+        Entry::Statement(statement) => statement.span.start,
     }
 }
 
@@ -256,9 +273,25 @@ fn any_broken(body: &Body) -> bool {
     body.entries.iter().any(|entry| match entry {
         Entry::Broken(_) => true,
         Entry::Field(field) => matches!(field.value.kind, ExprKind::Invalid),
-        Entry::Statement(statement) => match statement.as_ref() {
-            Statement::Thing { construct, .. } => any_broken(&construct.body),
-            Statement::Definition { value, .. } => matches!(value.kind, ExprKind::Invalid),
+        Entry::Statement(statement) => match &statement.kind {
+            StatementKind::Thing { construct, .. } => any_broken(&construct.body),
+            StatementKind::Definition { value, .. } | StatementKind::Function { value, .. } => {
+                matches!(value.kind, ExprKind::Invalid)
+            }
+            StatementKind::Param { default, ty, .. } => {
+                matches!(default.kind, ExprKind::Invalid) || matches!(ty, TypeName::Invalid(_))
+            }
+            StatementKind::Part { body, .. } => any_broken(body),
+            StatementKind::For { list, body, .. } => {
+                matches!(list.kind, ExprKind::Invalid) || any_broken(body)
+            }
+            StatementKind::If { condition, then, otherwise } => {
+                matches!(condition.kind, ExprKind::Invalid)
+                    || any_broken(then)
+                    || otherwise.as_ref().is_some_and(any_broken)
+            }
+            StatementKind::Assert { condition, .. } => matches!(condition.kind, ExprKind::Invalid),
+            StatementKind::Import { .. } => false,
         },
     })
 }
@@ -269,7 +302,8 @@ fn pieces() -> impl Strategy<Value = String> {
         "sphere", "group", "let", "material", "and", "not", "radius", "a", "in", "to", "{", "}", "(", ")",
         "[", "]", "<", ">", ":", "=", ";", ",", "\n", " ", "+", "-", "*", "/", "|>", ".", "..", "==", "1",
         "1.5", ".5", "1e", "8mm", " mm", "%", "m2", "#fff", "#12345", "\"", "\"a\"", "\\", "//", "/*", "*/",
-        "é", "\u{1}", "\u{feff}", "\r\n", "true",
+        "é", "\u{1}", "\u{feff}", "\r\n", "true", "param", "part", "import", "as", "for", "if", "then",
+        "else", "elif", "fn", "->", "assert", "@", "@off", "@allow(", "///",
     ]);
     prop::collection::vec(piece, 0..60).prop_map(|pieces| pieces.concat())
 }

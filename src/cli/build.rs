@@ -15,6 +15,7 @@ use rt_lang::lower::Overrides;
 use rt_lang::output::{Depth, Facts, Format, Picture, encode};
 use rt_lang::render::{Cancelled, Control, Rendered, Shown, Tracer, Window};
 use rt_lang::scene::{self, Scene};
+use rt_lang::{Options, compile};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

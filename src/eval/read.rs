@@ -1,9 +1,11 @@
 //! Reading values as the types that the schema promises.
 
+use super::texture::Paint;
 use super::value::{Made, ThingId, Value};
 use crate::color::Rgb;
 use crate::math::{DAffine3, DVec3};
 use crate::schema::{self, Filter, Tonemap, Typed};
+use smol_str::SmolStr;
 use std::rc::Rc;
 
 /// A type of fields whose values can be read.
@@ -52,10 +54,12 @@ reads! {
     Int as f64: Value::Number(x) => Some(*x);
     Bool as bool: Value::Bool(x) => Some(*x);
     Color as Rgb: Value::Color(color) => Some(*color);
+    Paint as Paint: value => paint(value);
+    Text as SmolStr: Value::Text(text) => Some(text.clone());
     Transform as DAffine3: Value::Transform(transform) => Some(**transform);
     Made as Rc<Made>: Value::Made(made) => Some(made.clone());
     LensPart as Rc<Made>: Value::Made(made) => Some(made.clone());
-    CameraName as ThingId: Value::Thing(id) => Some(*id);
+    CameraName as ThingId: Value::Thing(thing) => Some(thing.id);
     FilterWord as Filter: Value::Word(word) => Filter::from_word(word);
     TonemapWord as Tonemap: Value::Word(word) => Tonemap::from_word(word);
     Point as DVec3: value => triple(value);
@@ -95,9 +99,17 @@ fn triple(value: &Value) -> Option<DVec3> {
     }
 }
 
+fn paint(value: &Value) -> Option<Paint> {
+    match value {
+        Value::Color(color) => Some(Paint::Plain(*color)),
+        Value::Texture(texture) => Some(Paint::Texture(texture.clone())),
+        _ => None,
+    }
+}
+
 fn aim(value: &Value) -> Option<Aim> {
     match value {
-        Value::Thing(id) => Some(Aim::Thing(*id)),
+        Value::Thing(thing) => Some(Aim::Thing(thing.id)),
         value => triple(value).map(Aim::Point),
     }
 }

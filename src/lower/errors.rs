@@ -2,6 +2,7 @@
 
 use super::MAX_PIXELS;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::files::FileError;
 use crate::schema::camera;
 use crate::span::{SourceId, Span};
 
@@ -10,8 +11,8 @@ fn start() -> Span {
     Span::new(SourceId(0), 0, 0)
 }
 
-pub(super) fn nothing_stands() -> Diagnostic {
-    Diagnostic::new(Code::E0302, "nothing stands in this scene", start())
+pub(super) fn nothing_stands(main: SourceId) -> Diagnostic {
+    Diagnostic::new(Code::E0302, "nothing stands in this scene", Span::new(main, 0, 0))
         .at("no shape and no light")
         .help("a thing in the picture is a statement of its own: `sphere { radius: 1m }`")
 }
@@ -77,6 +78,53 @@ pub(super) fn endless_power(span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0304, "`power` cannot be spread over an endless surface", span)
         .at("over an infinite area")
         .help("give `radiance: 1W/m2` in its place, or the shape an end")
+}
+
+pub(super) fn textured_power(span: Span, color: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0304, "`power` does not go with a texture", span)
+        .at("spread how?")
+        .label(color, "a texture")
+        .help("how much a texture leaves of it is not known: give `radiance: 1W/m2` in its place")
+}
+
+/// A file that cannot be had. `written` is its path in the text.
+pub(super) fn file(written: &str, error: FileError, span: Span) -> Diagnostic {
+    let (label, help) = match error {
+        FileError::Missing => {
+            ("no such file".to_string(), "paths start at the folder of the file they stand in")
+        }
+        FileError::Outside => (
+            "not below the root folder".to_string(),
+            "a scene reads only files below its root folder; choose a wider one with `--root`",
+        ),
+        FileError::TooLarge(most) => (format!("more than {most} bytes"), "store it smaller"),
+        FileError::Unreadable(why) => (why, "look at the file's name and permissions"),
+    };
+    Diagnostic::new(Code::E0501, format!("`{written}` cannot be read"), span).at(label).help(help)
+}
+
+pub(super) fn no_picture(written: &str, why: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0501, format!("`{written}` {why}"), span)
+        .at("not usable as a picture")
+        .help("a picture is an opaque PNG, JPEG, WebP, HDR or EXR")
+}
+
+pub(super) fn too_many_texels(most: u64, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0406, format!("the pictures have more than {most} pixels together"), span)
+        .at("one too many")
+        .help("store pictures smaller")
+}
+
+pub(super) fn too_bright(written: &str, peak: f64, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0402, format!("`{written}` reflects more than it receives"), span)
+        .at(format!("a channel of {peak}"))
+        .help("no channel of a reflectance is above 1: store it darker, or as a PNG")
+}
+
+pub(super) fn stretched_sky(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0403, "the groups around this sky stretch it", span)
+        .at("can only be turned")
+        .help("a picture of all directions has no size; leave it outside of groups that `scale` unevenly")
 }
 
 pub(super) fn lens_of_which(lens: Span, camera: Span) -> Diagnostic {

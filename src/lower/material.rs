@@ -1,11 +1,13 @@
 //! Materials: colours as reflectance, tint as absorption, roughness as α, power as radiance.
 
 use super::errors;
+use super::texture::Textures;
+use crate::color::Rgb;
 use crate::diagnostic::Diagnostic;
-use crate::eval::{Given, Made, Things, Value};
+use crate::eval::{Given, Made, Paint as Written, Things, Value};
 use crate::math::{DVec3, PI, ln};
-use crate::scene::{Material, MaterialId, Shape};
-use crate::schema::{dielectric, diffuse, emitter, metal, mirror, plastic};
+use crate::scene::{Material, MaterialId, Paint, Shape};
+use crate::schema::{self, Key, dielectric, diffuse, emitter, metal, mirror, plastic};
 use std::collections::BTreeMap;
 
 /// The materials of a scene, each once.
@@ -40,17 +42,27 @@ impl Materials {
 
 /// What a surface is made of that names no material.
 pub(super) fn bare(things: &Things) -> Material {
-    Material::Diffuse { color: things.read(&super::plain(diffuse::KIND), diffuse::COLOR) }
+    let color = match things.read(&super::plain(diffuse::KIND), diffuse::COLOR) {
+        Written::Plain(color) => Paint::Plain(color),
+        Written::Texture(_) => unreachable!("the default of a colour is one"),
+    };
+    Material::Diffuse { color }
 }
 
 /// Lowers the material of a shape. A glowing one may count its power over the surface.
-pub(super) fn lower(things: &Things, given: &Given, shape: &Shape) -> Result<Material, Box<Diagnostic>> {
+pub(super) fn lower(
+    textures: &mut Textures,
+    things: &Things,
+    given: &Given,
+    shape: &Shape,
+) -> Result<Material, Box<Diagnostic>> {
     let Value::Made(made) = &given.value else { return Ok(bare(things)) };
     let kind = made.kind;
+    let mut paint = |key: Key<schema::Paint>| textures.paint(&things.read(made, key), 1.0);
     Ok(if kind == diffuse::KIND {
-        Material::Diffuse { color: things.read(made, diffuse::COLOR) }
+        Material::Diffuse { color: paint(diffuse::COLOR)? }
     } else if kind == mirror::KIND {
-        Material::Mirror { color: things.read(made, mirror::COLOR) }
+        Material::Mirror { color: paint(mirror::COLOR)? }
     } else if kind == dielectric::KIND {
         let tint = things.read(made, dielectric::TINT);
         let depth = things.read(made, dielectric::DEPTH);
@@ -61,23 +73,34 @@ pub(super) fn lower(things: &Things, given: &Given, shape: &Shape) -> Result<Mat
             alpha: alpha(things.read(made, dielectric::ROUGHNESS)),
         }
     } else if kind == metal::KIND {
-        Material::Metal {
-            color: things.read(made, metal::COLOR),
-            alpha: alpha(things.read(made, metal::ROUGHNESS)),
-        }
+        Material::Metal { color: paint(metal::COLOR)?, alpha: alpha(things.read(made, metal::ROUGHNESS)) }
     } else if kind == plastic::KIND {
         Material::Plastic {
-            color: things.read(made, plastic::COLOR),
+            color: paint(plastic::COLOR)?,
             ior: things.read(made, plastic::IOR),
             alpha: alpha(things.read(made, plastic::ROUGHNESS)),
         }
     } else {
-        glow(things, made, given, shape)?
+        glow(textures, things, made, given, shape)?
     })
 }
 
-fn glow(things: &Things, made: &Made, given: &Given, shape: &Shape) -> Result<Material, Box<Diagnostic>> {
-    let color = things.read(made, emitter::COLOR);
+fn glow(
+    textures: &mut Textures,
+    things: &Things,
+    made: &Made,
+    given: &Given,
+    shape: &Shape,
+) -> Result<Material, Box<Diagnostic>> {
+    let (color, pattern) = match textures.paint(&things.read(made, emitter::COLOR), f64::INFINITY)? {
+        Paint::Plain(color) => (color, None),
+        Paint::Texture(pattern) => (Rgb::ONE, Some(pattern)),
+    };
+    if let (Some(_), Some((_, color)), Some((_, power))) =
+        (pattern, made.given(emitter::COLOR), made.given(emitter::POWER))
+    {
+        return Err(Box::new(errors::textured_power(power, color)));
+    }
     let radiance = match (made.given(emitter::POWER), made.given(emitter::RADIANCE)) {
         (Some((power, span)), _) => {
             let sides = if shape.is_closed() { 1.0 } else { 2.0 };
@@ -91,7 +114,7 @@ fn glow(things: &Things, made: &Made, given: &Given, shape: &Shape) -> Result<Ma
         (None, None) => DVec3::ZERO,
     };
     match radiance.is_finite() {
-        true => Ok(Material::Emitter { radiance }),
+        true => Ok(Material::Emitter { radiance, pattern }),
         false => Err(Box::new(errors::glows_beyond(given.span))),
     }
 }

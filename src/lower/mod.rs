@@ -5,16 +5,23 @@ mod camera;
 mod errors;
 mod material;
 mod shape;
+mod sky;
+mod texture;
 
 use crate::color::Rgb;
 use crate::diagnostic::Diagnostic;
-use crate::eval::{Thing, ThingId, Things};
-use crate::math::DVec3;
+use crate::eval::{Reach, Thing, ThingId, Things};
+use crate::files::Files;
+use crate::math::{DAffine3, DVec3};
 use crate::scene::shape::Bounds;
-use crate::scene::{Develop, Light, Material, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace};
-use crate::schema::{Category, DEFAULT_SAMPLES, light, render, sky, sun};
-use crate::span::Span;
+use crate::scene::{
+    Develop, FrameId, Light, Material, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace,
+};
+use crate::schema::{self, Category, DEFAULT_SAMPLES, KindId, light, render, sun};
+use crate::source::Sources;
+use crate::span::{SourceId, Span};
 use material::Materials;
+use texture::Textures;
 
 /// The most pixels a picture may have.
 pub const MAX_PIXELS: u64 = 100_000_000;
@@ -61,14 +68,18 @@ pub struct Places {
 }
 
 /// Lowers the things of a picture. Things with errors, which were reported, are left out.
-pub fn lower(things: &Things, overrides: &Overrides) -> Lowered {
+pub fn lower(things: &Things, overrides: &Overrides, files: &dyn Files, sources: &Sources) -> Lowered {
+    let written = written_blocks(things);
     let mut lowering = Lowering {
         things,
         overrides,
+        written: &written,
         primitives: vec![],
         materials: Materials::default(),
+        textures: Textures::new(files, sources),
+        frames: vec![],
         lights: vec![],
-        extents: vec![Extent::Nowhere; things.things.len()],
+        extents: vec![Extent::Nowhere; things.len()],
         bare: 0,
         out: Lowered::default(),
     };
@@ -80,9 +91,13 @@ pub fn lower(things: &Things, overrides: &Overrides) -> Lowered {
     if let (Some(camera), Some(size)) = (camera, size) {
         let (trace, tonemap) = lowering.trace(&blocks, size);
         lowering.warn_inside(camera.0.position, blocks.camera);
+        let (textures, images) = lowering.textures.finish();
         lowering.out.scene = Some(Scene {
             primitives: lowering.primitives,
             materials: lowering.materials.finish(),
+            textures,
+            images,
+            frames: lowering.frames,
             lights: lowering.lights,
             camera: camera.0,
             trace,
@@ -93,16 +108,45 @@ pub fn lower(things: &Things, overrides: &Overrides) -> Lowered {
 }
 
 /// What is wrong with things among which there is nothing to see: asked only where nothing else is wrong.
-pub fn nothing_to_see(things: &Things) -> Option<Diagnostic> {
-    let seen = |thing: &Thing| matches!(thing.made.kind.get().category, Category::Shape | Category::Light);
-    (!things.things.iter().any(seen)).then(errors::nothing_stands)
+pub fn nothing_to_see(things: &Things, main: SourceId) -> Option<Diagnostic> {
+    let seen = |kind: KindId| matches!(kind.get().category, Category::Shape | Category::Light);
+    (!things.kinds().any(seen)).then(|| errors::nothing_stands(main))
+}
+
+/// Where a thing is, for what asks before there is a scene.
+pub fn measure(things: &Things, thing: &Thing) -> Result<Reach, Box<Diagnostic>> {
+    let (made, kind) = (&thing.made, thing.made.kind);
+    let shape = if kind.get().category == Category::Shape {
+        shape::lower(things, thing)?
+    } else if kind == light::KIND {
+        let at = things.read(made, light::AT);
+        let radius = things.read(made, light::RADIUS);
+        if radius == 0.0 {
+            let position = thing.world_from_object.transform_point3(at);
+            return Ok(Reach::Box(Bounds { min: position, max: position }));
+        }
+        shape::ball(thing.world_from_object * DAffine3::from_translation(at), radius, made.span)?
+    } else {
+        return Ok(Reach::Nowhere);
+    };
+    Ok(shape.bounds().map_or(Reach::Endless, Reach::Box))
+}
+
+/// The blocks that are not left out, each with its index among the things.
+fn written_blocks(things: &Things) -> Vec<(usize, Thing)> {
+    let block = |thing: &Thing| thing.made.kind.get().category == Category::Block && !thing.hidden;
+    things.iter().enumerate().filter(|(_, thing)| block(thing)).collect()
 }
 
 struct Lowering<'a> {
     things: &'a Things,
     overrides: &'a Overrides,
+    /// The blocks, each with its index among the things.
+    written: &'a [(usize, Thing)],
     primitives: Vec<Primitive>,
     materials: Materials,
+    textures: Textures<'a>,
+    frames: Vec<DAffine3>,
     lights: Vec<Light>,
     /// By thing.
     extents: Vec<Extent>,
@@ -139,11 +183,16 @@ impl<'a> Lowering<'a> {
 
     fn surfaces_and_lights(&mut self) {
         let mut sky_place = None;
-        for (index, thing) in self.things.things.iter().enumerate() {
+        for (index, thing) in self.things.iter().enumerate() {
+            let thing = &thing;
+            if thing.hidden {
+                self.hidden(index, thing);
+                continue;
+            }
             let sound =
                 thing.made.is_sound() && thing.material.as_ref().is_none_or(|given| given.value.is_sound());
             let kind = thing.made.kind;
-            if kind == sky::KIND {
+            if kind == schema::sky::KIND {
                 if let Some(first) = sky_place {
                     self.report(errors::second("sky", thing.made.span, first));
                     continue;
@@ -159,11 +208,16 @@ impl<'a> Lowering<'a> {
                 self.lamp(index, thing);
             } else if kind == sun::KIND {
                 self.sun(thing);
-            } else if kind == sky::KIND {
-                let color = self.things.read(&thing.made, sky::COLOR);
-                let radiance = self.things.read(&thing.made, sky::RADIANCE);
-                self.add_light(thing, Light::Sky { radiance: color * radiance });
+            } else if kind == schema::sky::KIND {
+                self.sky(thing);
             }
+        }
+    }
+
+    /// What is left out is not drawn, and still has its place for those that aim at it.
+    fn hidden(&mut self, index: usize, thing: &Thing) {
+        if let (true, Ok(Reach::Box(bounds))) = (thing.made.is_sound(), measure(self.things, thing)) {
+            self.extents[index] = Extent::Lamp(bounds);
         }
     }
 
@@ -175,7 +229,7 @@ impl<'a> Lowering<'a> {
         let extent = shape.bounds().map_or(Extent::Endless, Extent::Box);
         self.extents[index] = extent;
         let material = match &thing.material {
-            Some(given) => match material::lower(self.things, given, &shape) {
+            Some(given) => match material::lower(&mut self.textures, self.things, given, &shape) {
                 Ok(material) => material,
                 Err(diagnostic) => return self.report(self.used_at(thing, *diagnostic)),
             },
@@ -184,12 +238,16 @@ impl<'a> Lowering<'a> {
                 material::bare(self.things)
             }
         };
-        self.add_surface(shape, material, thing.origin);
+        let frame = material.texture().map(|_| {
+            self.frames.push(thing.world_from_object.inverse());
+            FrameId(self.frames.len() as u32 - 1)
+        });
+        self.add_surface(shape, material, frame, thing.origin);
     }
 
-    fn add_surface(&mut self, shape: Shape, material: Material, origin: OriginId) {
+    fn add_surface(&mut self, shape: Shape, material: Material, frame: Option<FrameId>, origin: OriginId) {
         let material = self.materials.add(material);
-        self.primitives.push(Primitive { shape, material, origin });
+        self.primitives.push(Primitive { shape, material, frame, origin });
     }
 
     /// A lamp: a point, or a glowing sphere.
@@ -217,7 +275,7 @@ impl<'a> Lowering<'a> {
                 if !radiance.is_finite() {
                     return self.report(self.used_at(thing, errors::glows_beyond(made.span)));
                 }
-                self.add_surface(shape, Material::Emitter { radiance }, thing.origin);
+                self.add_surface(shape, Material::Emitter { radiance, pattern: None }, None, thing.origin);
             }
             Err(diagnostic) => self.report(self.used_at(thing, *diagnostic)),
         }
@@ -239,7 +297,7 @@ impl<'a> Lowering<'a> {
         let finite = match light {
             Light::Point { intensity, .. } => intensity.is_finite(),
             Light::Sun { irradiance, .. } => irradiance.is_finite(),
-            Light::Sky { radiance } => radiance.is_finite(),
+            Light::Sky { radiance, .. } => radiance.is_finite(),
         };
         match finite {
             true => self.lights.push(light),
@@ -249,8 +307,8 @@ impl<'a> Lowering<'a> {
 
     /// Finds the one camera, lens and render block.
     fn blocks(&mut self) -> Blocks<'a> {
-        let all: &'a [Thing] = &self.things.things;
-        let of = |kind| all.iter().filter(move |thing| thing.made.kind == kind);
+        let all = self.written;
+        let of = |kind| all.iter().map(|(_, thing)| thing).filter(move |thing| thing.made.kind == kind);
         let mut blocks = Blocks::default();
         for (kind, place) in
             [(render::KIND, &mut blocks.render), (crate::schema::lens::KIND, &mut blocks.lens)]
@@ -267,8 +325,8 @@ impl<'a> Lowering<'a> {
         }
         let cameras: Vec<(usize, &Thing)> = all
             .iter()
-            .enumerate()
             .filter(|(_, thing)| thing.made.kind == crate::schema::camera::KIND)
+            .map(|(index, thing)| (*index, thing))
             .collect();
         blocks.camera = self.choose_camera(&cameras, blocks.render);
         if let (Some(lens), [first, _, ..]) = (blocks.lens, &cameras[..]) {
@@ -278,9 +336,10 @@ impl<'a> Lowering<'a> {
     }
 
     fn choose_camera(&mut self, cameras: &[(usize, &'a Thing)], render: Option<&Thing>) -> Option<&'a Thing> {
-        let names: Vec<&str> = cameras.iter().filter_map(|(_, camera)| camera.name.as_deref()).collect();
+        let names: Vec<&str> =
+            cameras.iter().filter_map(|(_, camera)| camera.name()).map(|name| name.as_str()).collect();
         if let Some(wanted) = &self.overrides.camera {
-            let found = cameras.iter().find(|(_, camera)| camera.name.as_deref() == Some(wanted));
+            let found = cameras.iter().find(|(_, camera)| camera.name().is_some_and(|name| name == wanted));
             if found.is_none() && !self.things.incomplete {
                 let place = cameras.first().map(|(_, camera)| camera.made.span);
                 self.report(errors::no_such_camera(wanted, &names, place));
@@ -302,7 +361,7 @@ impl<'a> Lowering<'a> {
     }
 
     fn places(&self, id: ThingId) -> Option<std::ops::Range<usize>> {
-        self.things.places.get(&id).cloned()
+        self.things.place(id)
     }
 
     /// Width and height in pixels; none where there are too many.
@@ -362,11 +421,11 @@ impl<'a> Lowering<'a> {
         if self.lights.is_empty() && !glows {
             let lights = self
                 .things
-                .things
                 .iter()
+                .filter(|thing| !thing.hidden)
                 .any(|thing| thing.made.kind.get().category == Category::Light || !thing.made.is_sound());
             if !lights {
-                self.lights.push(Light::Sky { radiance: Rgb::ONE });
+                self.lights.push(Light::Sky { radiance: Rgb::ONE, panorama: None });
                 self.out.notes.push("no light: a soft white sky, as `sky {}`".into());
             }
         }

@@ -3,10 +3,10 @@
 use super::errors;
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Thing, Things};
-use crate::math::{DAffine3, DVec3};
+use crate::math::{DAffine3, DMat3, DVec3, basis};
 use crate::scene::Shape;
-use crate::scene::shape::{Form, Quadric};
-use crate::schema::{hyperboloid, plane, sphere};
+use crate::scene::shape::{Form, Placed, Quadric};
+use crate::schema::{cone, cuboid, cylinder, disk, hyperboloid, paraboloid, plane, sphere};
 use crate::span::Span;
 
 /// A map stretches by no more than this beyond another direction and still counts as a similarity: rounding of
@@ -24,6 +24,30 @@ pub(super) fn lower(things: &Things, thing: &Thing) -> Result<Shape, Box<Diagnos
         ball(placement, things.read(made, sphere::RADIUS), made.span)
     } else if made.kind == hyperboloid::KIND {
         hyperboloid(things, thing)
+    } else if made.kind == paraboloid::KIND {
+        let [radius, height] = [paraboloid::RADIUS, paraboloid::HEIGHT].map(|key| things.read(made, key));
+        let axes = DVec3::new(radius, height, radius);
+        let capped = !things.read(made, paraboloid::OPEN);
+        quadric(Form::Paraboloid, placement, axes, [f64::NEG_INFINITY, 1.0], capped, made.span)
+    } else if made.kind == cone::KIND {
+        cone(things, thing)
+    } else if made.kind == cylinder::KIND {
+        let [radius, height] = [cylinder::RADIUS, cylinder::HEIGHT].map(|key| things.read(made, key));
+        let axes = DVec3::new(radius, height, radius);
+        let capped = !things.read(made, cylinder::OPEN);
+        quadric(Form::Cylinder, placement, axes, [0.0, 1.0], capped, made.span)
+    } else if made.kind == disk::KIND {
+        let normal = things.read(made, disk::NORMAL);
+        let span = made.given(disk::NORMAL).map_or(made.span, |(_, span)| span);
+        let Some(normal) = unit(normal) else { return Err(Box::new(errors::no_direction("normal", span))) };
+        let (z, x) = basis(normal);
+        let turned = DMat3::from_cols(x, normal, z) * things.read(made, disk::RADIUS);
+        let placed = placed(placement * DAffine3::from_mat3(turned), made.span)?;
+        Ok(Shape::Disk(Box::new(placed)))
+    } else if made.kind == cuboid::KIND {
+        let half = 0.5 * things.read(made, cuboid::SIZE);
+        let placed = placed(placement * DAffine3::from_scale(half), made.span)?;
+        Ok(Shape::Box(Box::new(placed)))
     } else {
         let normal = things.read(made, plane::NORMAL);
         let span = made.given(plane::NORMAL).map_or(made.span, |(_, span)| span);
@@ -73,6 +97,27 @@ fn hyperboloid(things: &Things, thing: &Thing) -> Result<Shape, Box<Diagnostic>>
     quadric(form, thing.world_from_object, axes, [-end, end], capped, made.span)
 }
 
+/// A cone, cut off or not. The apex is at the origin of object space, where the radius is 1 at y = −1.
+fn cone(things: &Things, thing: &Thing) -> Result<Shape, Box<Diagnostic>> {
+    /// Radii that differ by no more than this share of them make a cylinder: a billionth is not to be seen, and the
+    /// apex would be so far off that places near the cone had few digits left.
+    const ALIKE: f64 = 1e-9;
+    let made = &thing.made;
+    let [radius, height, top] = [cone::RADIUS, cone::HEIGHT, cone::TOP].map(|key| things.read(made, key));
+    let capped = !things.read(made, cone::OPEN);
+    let placement = thing.world_from_object;
+    if (radius - top).abs() <= ALIKE * radius {
+        let axes = DVec3::new(radius, height, radius);
+        return quadric(Form::Cylinder, placement, axes, [0.0, 1.0], capped, made.span);
+    }
+    let apex = height / (1.0 - top / radius);
+    let raised = placement * DAffine3::from_translation(apex * DVec3::Y);
+    let axes = DVec3::new(radius, apex.abs(), radius);
+    // A cone that widens upwards has its apex below.
+    let ends = if top < radius { [-1.0, -top / radius] } else { [1.0, top / radius] };
+    quadric(Form::Cone, raised, axes, ends, capped, made.span)
+}
+
 fn quadric(
     form: Form,
     placement: DAffine3,
@@ -81,9 +126,15 @@ fn quadric(
     capped: bool,
     span: Span,
 ) -> Result<Shape, Box<Diagnostic>> {
-    let world_from_object = placement * DAffine3::from_scale(axes);
+    let Placed { world_from_object, object_from_world } =
+        placed(placement * DAffine3::from_scale(axes), span)?;
+    let quadric = Quadric { form, world_from_object, object_from_world, low, high, capped };
+    Ok(Shape::Quadric(Box::new(quadric)))
+}
+
+fn placed(world_from_object: DAffine3, span: Span) -> Result<Placed, Box<Diagnostic>> {
     let object_from_world = invert(world_from_object).ok_or_else(|| Box::new(errors::flattened(span)))?;
-    Ok(Shape::Quadric(Quadric { form, world_from_object, object_from_world, low, high, capped }))
+    Ok(Placed { world_from_object, object_from_world })
 }
 
 /// The inverse of a map that keeps three dimensions.

@@ -95,16 +95,16 @@ pub(super) fn radiance<O: Observer>(
 
         // Account for what the surface gives by itself.
         let material = tracer.scene.material(primitive);
-        if let Material::Emitter { radiance } = material {
+        if let Some(radiance) = tracer.glow(hit.place, &point) {
             if entering || !primitive.shape.is_closed() {
                 let source = Source::Primitive(hit.place.primitive);
-                path.find(tracer, source, *radiance, Some((&point, hit.place)));
+                path.find(tracer, source, radiance, Some((&point, hit.place)));
             }
             break;
         }
 
         // Go straight through a boundary that parts nothing.
-        let Some(bsdf) = tracer.bsdf(material, hit.place, inside, entering) else {
+        let Some(bsdf) = tracer.bsdf(material, hit.place, &point, inside, entering) else {
             tracer.dielectrics.cross(inside, hit.place.primitive, entering);
             path.ray = Ray { origin: point.p, start: Some(hit.place), ..path.ray };
             passes += 1;
@@ -260,7 +260,8 @@ impl<O: Observer> Path<'_, O> {
         }
         let visible = visibility(tracer, vertex, &light, shadow);
         if visible != Rgb::ZERO {
-            let radiance = light.radiance.min(Rgb::splat(BRIGHTEST));
+            let glow = light.target.and_then(|target| tracer.glow(target.place, &target.point));
+            let radiance = glow.unwrap_or(light.radiance).min(Rgb::splat(BRIGHTEST));
             let bounces = (self.bounces + 1, self.rough_bounces + 1);
             self.add(
                 lamp.source(),
@@ -303,7 +304,7 @@ fn visibility(tracer: &Tracer, vertex: &LocalVertex, light: &LightSample, inside
     let except = light.target.map(|target| target.place.primitive);
     // The glowing surface itself is asked from its own point, where its equation is exact.
     if let Some(target) = light.target.filter(|target| target.hides_itself) {
-        let back = Ray { origin: target.p, direction: -light.wi, start: Some(target.place) };
+        let back = Ray { origin: target.point.p, direction: -light.wi, start: Some(target.place) };
         if tracer.meets(&back, light.distance) {
             return Rgb::ZERO;
         }

@@ -4,13 +4,17 @@
 //! Each `sample` stands beside the `pdf` with which a ray that was scattered towards the light would have been
 //! drawn, so that the two ways can share the work (multiple importance sampling).
 
+mod panorama;
+mod surface;
+
 use super::shape::{Face, Place, SurfacePoint};
 use super::warp;
 use crate::color::{Rgb, luminance};
 use crate::math::{DVec3, PI, basis};
-use crate::scene::shape::Quadric;
-use crate::scene::{Light, Material, PrimitiveId, Scene, Shape};
+use crate::scene::{Light, Material, Paint, PrimitiveId, Scene, Shape};
+use panorama::Sky;
 use std::collections::BTreeMap;
+use surface::Glowing;
 
 /// What gives light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -38,7 +42,7 @@ pub struct LightSample {
     /// How far away it is, maybe infinitely.
     pub distance: f64,
     /// Radiance from there if nothing is in between; of a point or a distant one its irradiance on a surface
-    /// that faces it.
+    /// that faces it. Of a glowing surface with a pattern it is what the pattern multiplies.
     pub radiance: Rgb,
     /// Density in solid angle; 1 where there is but one direction.
     pub pdf: f64,
@@ -51,8 +55,8 @@ pub struct LightSample {
 /// A point on a glowing surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
-    /// Where.
-    pub p: DVec3,
+    /// Where, with its normal.
+    pub point: SurfacePoint,
     /// On which surface.
     pub place: Place,
     /// Whether the surface may hide its own points.
@@ -70,7 +74,12 @@ pub struct Lights {
 /// One of them.
 pub struct Lamp {
     source: Source,
+    /// What a pattern or panorama multiplies, if there is one.
     radiance: Rgb,
+    /// Luminance of the mean radiance.
+    strength: f64,
+    /// The greatest channel of the radiance.
+    peak: f64,
     kind: Kind,
 }
 
@@ -85,32 +94,13 @@ enum Kind {
         sine: f64,
     },
     Sky,
+    Panorama(Box<Sky>),
     Sphere {
         id: PrimitiveId,
         center: DVec3,
         radius: f64,
     },
-    Quadric(Box<GlowingQuadric>),
-}
-
-struct GlowingQuadric {
-    id: PrimitiveId,
-    quadric: Quadric,
-    area: f64,
-    /// Middle of its box, and half the diagonal squared.
-    center: DVec3,
-    extent_squared: f64,
-    parts: Vec<Part>,
-}
-
-/// A stretch of the side, or a cap.
-struct Part {
-    face: Face,
-    /// From and to in object space's y; for a cap twice the same.
-    stretch: [f64; 2],
-    /// Of the whole area.
-    share: f64,
-    area: f64,
+    Surface(Box<Glowing>),
 }
 
 /// What the uniform share in choosing a light is. It bounds the noise where the estimates are far off.
@@ -119,17 +109,22 @@ const UNIFORM: f64 = 0.1;
 impl Lights {
     /// Collects the lights of a scene. Surfaces without end are left out: only scattered rays find them.
     pub fn new(scene: &Scene) -> Lights {
-        let lights = (0..).zip(&scene.lights).map(|(i, light)| Lamp::from_light(Source::Light(i), light));
+        let lights =
+            (0..).zip(&scene.lights).map(|(i, light)| Lamp::from_light(scene, Source::Light(i), light));
         let glowing = (0..).map(PrimitiveId).zip(&scene.primitives).filter_map(|(id, primitive)| match scene
             .material(primitive)
         {
-            Material::Emitter { radiance } => Lamp::from_surface(id, &primitive.shape, *radiance),
+            Material::Emitter { radiance, pattern } => {
+                let pattern = pattern.map_or(Paint::Plain(Rgb::ONE), Paint::Texture);
+                let mean = *radiance * scene.mean(pattern);
+                let peak = *radiance * scene.peak(pattern);
+                Lamp::from_surface(id, &primitive.shape, *radiance, mean, peak)
+            }
             _ => None,
         });
-        let lamps: Vec<Lamp> =
-            lights.chain(glowing).filter(|lamp| lamp.radiance.max_element() > 0.0).collect();
+        let lamps: Vec<Lamp> = lights.chain(glowing).filter(|lamp| lamp.peak > 0.0).collect();
         let by_source = lamps.iter().zip(0..).map(|(lamp, index)| (lamp.source, index)).collect();
-        let is_beyond = |lamp: &Lamp| matches!(lamp.kind, Kind::Sky | Kind::Sun { .. });
+        let is_beyond = |lamp: &Lamp| matches!(lamp.kind, Kind::Sky | Kind::Panorama(_) | Kind::Sun { .. });
         let beyond =
             lamps.iter().zip(0..).filter(|(lamp, _)| is_beyond(lamp)).map(|(_, index)| index).collect();
         Lights { lamps, by_source, beyond }
@@ -186,12 +181,12 @@ impl Lights {
             .iter()
             .map(|&index| &self.lamps[index as usize])
             .filter(move |lamp| lamp.is_seen_beyond(direction))
-            .map(|lamp| (lamp.source, lamp.radiance))
+            .map(move |lamp| (lamp.source, lamp.beyond(direction)))
     }
 
     /// The greatest channel of any light's radiance; of a point its intensity.
     pub fn peak(&self) -> f64 {
-        self.lamps.iter().map(|lamp| lamp.radiance.max_element()).fold(0.0, f64::max)
+        self.lamps.iter().map(|lamp| lamp.peak).fold(0.0, f64::max)
     }
 
     fn chance(&self, lamp: &Lamp, receiver: &Receiver, total: f64) -> f64 {
@@ -205,7 +200,7 @@ impl Lights {
 }
 
 impl Lamp {
-    fn from_light(source: Source, light: &Light) -> Lamp {
+    fn from_light(scene: &Scene, source: Source, light: &Light) -> Lamp {
         let (radiance, kind) = match *light {
             Light::Point { position, intensity } => (intensity, Kind::Point { position }),
             Light::Sun { direction, irradiance, radius } => {
@@ -213,18 +208,26 @@ impl Lamp {
                 let radiance = if sine > 0.0 { irradiance / (PI * sine * sine) } else { irradiance };
                 (radiance, Kind::Sun { direction, sine })
             }
-            Light::Sky { radiance } => (radiance, Kind::Sky),
+            Light::Sky { radiance, panorama: None } => (radiance, Kind::Sky),
+            Light::Sky { radiance, panorama: Some(panorama) } => {
+                (radiance, Kind::Panorama(Box::new(Sky::new(scene, &panorama))))
+            }
         };
-        Lamp { source, radiance, kind }
+        let (mean, peak) = match &kind {
+            Kind::Panorama(sky) => (sky.mean(), sky.peak()),
+            _ => (Rgb::ONE, 1.0),
+        };
+        let (strength, peak) = (luminance(radiance * mean), radiance.max_element() * peak);
+        Lamp { source, radiance, strength, peak, kind }
     }
 
-    fn from_surface(id: PrimitiveId, shape: &Shape, radiance: Rgb) -> Option<Lamp> {
+    fn from_surface(id: PrimitiveId, shape: &Shape, radiance: Rgb, mean: Rgb, peak: Rgb) -> Option<Lamp> {
         let kind = match shape {
             Shape::Sphere { center, radius } => Kind::Sphere { id, center: *center, radius: *radius },
-            Shape::Plane { .. } => return None,
-            Shape::Quadric(quadric) => Kind::Quadric(Box::new(GlowingQuadric::new(id, quadric, shape)?)),
+            shape => Kind::Surface(Box::new(Glowing::new(id, shape)?)),
         };
-        Some(Lamp { source: Source::Primitive(id), radiance, kind })
+        let (source, strength, peak) = (Source::Primitive(id), luminance(mean), peak.max_element());
+        Some(Lamp { source, radiance, strength, peak, kind })
     }
 
     /// What it is.
@@ -235,7 +238,7 @@ impl Lamp {
     /// About the irradiance at a receiver, were nothing in between. Only ratios matter, and they need not be
     /// right, but it is the same each time it is asked.
     fn estimate(&self, receiver: &Receiver) -> f64 {
-        let strength = luminance(self.radiance);
+        let strength = self.strength;
         let estimate = match &self.kind {
             Kind::Point { position } => {
                 let to = *position - receiver.p;
@@ -246,7 +249,7 @@ impl Lamp {
                 let solid_angle = if *sine > 0.0 { PI * sine * sine } else { 1.0 };
                 strength * solid_angle * cosine_bound(receiver, *direction, *sine)
             }
-            Kind::Sky => strength * PI,
+            Kind::Sky | Kind::Panorama(_) => strength * PI,
             Kind::Sphere { center, radius, .. } => {
                 let to = *center - receiver.p;
                 let squared = to.length_squared();
@@ -257,10 +260,7 @@ impl Lamp {
                 let bound = cosine_bound(receiver, to / squared.sqrt(), sine_squared.sqrt());
                 strength * PI * sine_squared * bound
             }
-            Kind::Quadric(glowing) => {
-                let squared = glowing.center.distance_squared(receiver.p);
-                strength * glowing.area / squared.max(glowing.extent_squared)
-            }
+            Kind::Surface(glowing) => strength * glowing.estimate(receiver.p),
         };
         // Finite even for a light in the very point.
         estimate.min(1e200)
@@ -279,7 +279,7 @@ impl Lamp {
         let beyond = |wi: DVec3, pdf: f64| LightSample {
             wi,
             distance: f64::INFINITY,
-            radiance: self.radiance,
+            radiance: self.beyond(wi),
             pdf,
             delta: false,
             target: None,
@@ -305,6 +305,10 @@ impl Lamp {
                 }
                 None => beyond(warp::sphere(u), warp::SPHERE_PDF),
             }),
+            Kind::Panorama(sky) => {
+                let (wi, pdf) = sky.sample(u);
+                (pdf > 0.0).then(|| beyond(wi, pdf))
+            }
             Kind::Sphere { id, center, radius } => {
                 let to = *center - receiver.p;
                 let d = to.length();
@@ -319,7 +323,9 @@ impl Lamp {
                 let half_chord = (radius * radius - d * d * sine_squared).max(0.0).sqrt();
                 let distance = (d - radius) * (d + radius) / (d * local.z + half_chord);
                 let place = Place { primitive: *id, face: Face::Side };
-                let target = Target { p: receiver.p + distance * wi, place, hides_itself: false };
+                let p = receiver.p + distance * wi;
+                let point = SurfacePoint { p, n: (p - *center) / *radius };
+                let target = Target { point, place, hides_itself: false };
                 Some(LightSample {
                     wi,
                     distance,
@@ -329,7 +335,7 @@ impl Lamp {
                     target: Some(target),
                 })
             }
-            Kind::Quadric(glowing) => glowing.sample(receiver, part, u, self.radiance),
+            Kind::Surface(glowing) => glowing.sample(receiver, part, u, self.radiance),
         }
     }
 
@@ -339,122 +345,35 @@ impl Lamp {
             Kind::Point { .. } => 0.0,
             Kind::Sun { sine, .. } if *sine == 0.0 => 0.0,
             Kind::Sun { sine, .. } => warp::cone_pdf(cone_height(*sine)),
+            Kind::Panorama(sky) => sky.pdf(wi),
             Kind::Sky => receiver.n.map_or(warp::SPHERE_PDF, |n| warp::cosine_pdf(n.dot(wi))),
             Kind::Sphere { center, radius, .. } => {
                 let sine = radius / center.distance(receiver.p);
                 if sine < 1.0 { warp::cone_pdf(cone_height(sine)) } else { 0.0 }
             }
-            Kind::Quadric(glowing) => {
+            Kind::Surface(glowing) => {
                 point.map_or(0.0, |(point, face)| glowing.pdf(receiver.p, wi, point, face))
             }
         }
     }
 
+    /// The radiance of what is seen in a direction beyond the scene.
+    fn beyond(&self, w: DVec3) -> Rgb {
+        match &self.kind {
+            Kind::Panorama(sky) => self.radiance * sky.seen(w),
+            _ => self.radiance,
+        }
+    }
+
     fn is_seen_beyond(&self, w: DVec3) -> bool {
         match &self.kind {
-            Kind::Sky => true,
+            Kind::Sky | Kind::Panorama(_) => true,
             // By the sine, which is exact for a small disc.
             Kind::Sun { direction, sine } => {
                 *sine > 0.0 && direction.dot(w) > 0.0 && direction.cross(w).length_squared() <= sine * sine
             }
             _ => false,
         }
-    }
-}
-
-impl GlowingQuadric {
-    fn new(id: PrimitiveId, quadric: &Quadric, shape: &Shape) -> Option<GlowingQuadric> {
-        let bounds = shape.bounds()?;
-        let [low_cap, high_cap] = quadric.cap_areas();
-        let [below, above] = quadric.stretches();
-        let mut parts: Vec<Part> = [
-            (Face::Side, below, quadric.side_area(below[0], below[1])),
-            (Face::Side, above, quadric.side_area(above[0], above[1])),
-            (Face::Low, [quadric.low; 2], low_cap),
-            (Face::High, [quadric.high; 2], high_cap),
-        ]
-        .into_iter()
-        .filter(|(_, _, area)| *area > 0.0)
-        .map(|(face, stretch, area)| Part { face, stretch, share: 0.0, area })
-        .collect();
-        let area: f64 = parts.iter().map(|part| part.area).sum();
-        parts.iter_mut().for_each(|part| part.share = part.area / area);
-        let extent_squared = 0.25 * bounds.size().length_squared();
-        let sampled = area > 0.0 && area < f64::INFINITY;
-        sampled.then(|| GlowingQuadric {
-            id,
-            quadric: *quadric,
-            area,
-            center: bounds.center(),
-            extent_squared,
-            parts,
-        })
-    }
-
-    /// A point by area: the part by its share, within the side uniform in y and angle.
-    fn sample(&self, receiver: &Receiver, part: f64, u: [f64; 2], radiance: Rgb) -> Option<LightSample> {
-        let mut rest = part;
-        let part = self.parts.iter().find(|part| {
-            let here = rest < part.share;
-            rest -= part.share;
-            here
-        });
-        let part = part.or(self.parts.last())?;
-        let object = match part.face {
-            Face::Side => {
-                let [low, high] = part.stretch;
-                self.quadric.side_point(low + u[0] * (high - low), 2.0 * PI * u[1])
-            }
-            Face::Low | Face::High => {
-                let y = part.stretch[0];
-                let p = self.quadric.form.radius_squared(y).sqrt() * warp::disc(u);
-                DVec3::new(p.x, y, p.y)
-            }
-        };
-        let p = self.quadric.world_from_object.transform_point3(object);
-        let gradient = match part.face {
-            Face::Side => self.quadric.form.half_gradient(object),
-            Face::Low => DVec3::NEG_Y,
-            Face::High => DVec3::Y,
-        };
-        let n = (self.quadric.object_from_world.matrix3.transpose() * gradient).normalize();
-        let to = p - receiver.p;
-        let distance = to.length();
-        let wi = to / distance;
-        let facing = -n.dot(wi);
-        let glows = if self.quadric.is_closed() { facing > 0.0 } else { facing != 0.0 };
-        let pdf = self.pdf(receiver.p, wi, &SurfacePoint { p, n }, part.face);
-        let place = Place { primitive: self.id, face: part.face };
-        (glows && pdf > 0.0 && pdf < f64::INFINITY).then_some(LightSample {
-            wi,
-            distance,
-            radiance,
-            pdf,
-            delta: false,
-            target: Some(Target { p, place, hides_itself: true }),
-        })
-    }
-
-    fn pdf(&self, from: DVec3, wi: DVec3, point: &SurfacePoint, face: Face) -> f64 {
-        let object = self.quadric.object_from_world.transform_point3(point.p);
-        let part = self.parts.iter().find(|part| {
-            part.face == face
-                && (face != Face::Side || self.parts_side(object.y) == self.parts_side(part.stretch[0]))
-        });
-        let Some(part) = part else { return 0.0 };
-        let by_area = match face {
-            Face::Side => {
-                let [low, high] = part.stretch;
-                part.share / ((high - low) * 2.0 * PI * self.quadric.side_density(object))
-            }
-            Face::Low | Face::High => 1.0 / self.area,
-        };
-        by_area * point.p.distance_squared(from) / point.n.dot(wi).abs()
-    }
-
-    /// Which of the sheets a height belongs to, where there are two.
-    fn parts_side(&self, y: f64) -> bool {
-        self.quadric.form == crate::scene::shape::Form::TwoSheet && y < 0.0
     }
 }
 

@@ -9,6 +9,7 @@
 //! | [`shape`] | where a ray meets a surface, without epsilons |
 //! | `accel` | which surface it meets first |
 //! | `camera`, [`sampler`], `warp` | rays of camera paths; random numbers; directions drawn from them |
+//! | [`texture`] | what colour they have at a point |
 //! | [`bsdf`] | how surfaces scatter light |
 //! | [`light`] | where light comes from |
 //! | [`media`] | which dielectric a path is inside of |
@@ -33,12 +34,13 @@ pub mod observer;
 mod prepass;
 pub mod sampler;
 pub mod shape;
+pub mod texture;
 #[cfg(test)]
 mod tests;
 mod warp;
 
 use crate::color::Rgb;
-use crate::scene::{Material, Scene, Target, Tonemap};
+use crate::scene::{Material, Paint, Scene, Target, Tonemap};
 use accel::Accel;
 use bsdf::{Bsdf, Coat};
 use camera::Eye;
@@ -52,7 +54,7 @@ pub use observer::Observer;
 pub use prepass::Prepass;
 use rayon::prelude::*;
 use sampler::Sampler;
-use shape::{Place, Ray};
+use shape::{Place, Ray, SurfacePoint};
 
 /// A scene, ready to be traced.
 pub struct Tracer<'s> {
@@ -239,23 +241,54 @@ impl<'s> Tracer<'s> {
     }
 
     /// What a surface does at a point, or none where it does nothing.
-    fn bsdf(&self, material: &Material, place: Place, inside: &Inside, entering: bool) -> Option<Bsdf<'_>> {
+    fn bsdf(
+        &self,
+        material: &Material,
+        place: Place,
+        point: &SurfacePoint,
+        inside: &Inside,
+        entering: bool,
+    ) -> Option<Bsdf<'_>> {
+        let paint = |paint: Paint| self.paint(paint, place, point);
         Some(match *material {
-            Material::Diffuse { color } => Bsdf::Diffuse(color),
-            Material::Mirror { color } => Bsdf::Mirror(color),
+            Material::Diffuse { color } => Bsdf::Diffuse(paint(color)),
+            Material::Mirror { color } => Bsdf::Mirror(paint(color)),
             Material::Dielectric { alpha, .. } => {
                 match self.dielectrics.boundary(inside, place.primitive, entering) {
                     Boundary::Nothing => return None,
                     Boundary::Interface(eta) => Bsdf::Dielectric { eta, alpha },
                 }
             }
-            Material::Metal { color, alpha } => Bsdf::Metal { color, alpha },
+            Material::Metal { color, alpha } => Bsdf::Metal { color: paint(color), alpha },
             Material::Plastic { color, .. } => {
                 let id = self.scene.primitives[place.primitive.0 as usize].material;
-                Bsdf::Plastic { color, coat: &self.coats[self.coat_of[id.0 as usize]] }
+                Bsdf::Plastic { color: paint(color), coat: &self.coats[self.coat_of[id.0 as usize]] }
             }
             Material::Emitter { .. } => return None,
         })
+    }
+
+    /// The colour of a paint at a point of a surface.
+    fn paint(&self, paint: Paint, place: Place, point: &SurfacePoint) -> Rgb {
+        match paint {
+            Paint::Plain(color) => color,
+            Paint::Texture(_) => {
+                let primitive = &self.scene.primitives[place.primitive.0 as usize];
+                let spot = texture::Spot::new(self.scene, primitive, place.face, point);
+                texture::paint(self.scene, paint, &spot)
+            }
+        }
+    }
+
+    /// What a surface radiates at a point, if it glows. Whether on this side is not asked.
+    fn glow(&self, place: Place, point: &SurfacePoint) -> Option<Rgb> {
+        match *self.scene.material(&self.scene.primitives[place.primitive.0 as usize]) {
+            Material::Emitter { radiance, pattern: None } => Some(radiance),
+            Material::Emitter { radiance, pattern: Some(id) } => {
+                Some(radiance * self.paint(Paint::Texture(id), place, point))
+            }
+            _ => None,
+        }
     }
 
     /// Whether a ray meets the surface that it starts on again, below a distance.
@@ -269,7 +302,10 @@ impl<'s> Tracer<'s> {
     /// The radiance of the brightest thing there is, in its brightest channel.
     fn peak(&self) -> f64 {
         let glowing = self.scene.materials.iter().map(|material| match material {
-            Material::Emitter { radiance } => radiance.max_element(),
+            Material::Emitter { radiance, pattern } => {
+                let share = pattern.map_or(Rgb::ONE, |id| self.scene.peak(Paint::Texture(id)));
+                (*radiance * share).max_element()
+            }
             _ => 0.0,
         });
         glowing.chain([self.lights.peak()]).fold(0.0, f64::max)

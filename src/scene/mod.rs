@@ -12,12 +12,16 @@
 
 pub mod nesting;
 pub mod shape;
+pub mod texture;
 
+pub use crate::asset::Image;
 use crate::color::Rgb;
-use crate::math::{DVec2, DVec3};
+use crate::math::{DAffine3, DMat3, DVec2, DVec3};
 pub use crate::schema::{Filter, Tonemap};
 use serde::Serialize;
 pub use shape::Shape;
+use std::sync::Arc;
+pub use texture::{FrameId, ImageId, Paint, Texture, TextureId};
 
 /// A whole picture, ready to be traced.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -26,6 +30,12 @@ pub struct Scene {
     pub primitives: Vec<Primitive>,
     /// Materials, each used by at least one primitive.
     pub materials: Vec<Material>,
+    /// What materials are painted with. An entry refers only to earlier ones.
+    pub textures: Vec<Texture>,
+    /// Pictures that textures and the sky show, each once.
+    pub images: Vec<Arc<Image>>,
+    /// Maps from the world to the own space of textured things.
+    pub frames: Vec<DAffine3>,
     /// Lights that are no surface.
     pub lights: Vec<Light>,
     /// Where the picture is taken from.
@@ -56,6 +66,8 @@ pub struct Primitive {
     pub shape: Shape,
     /// What it is made of.
     pub material: MaterialId,
+    /// From the world to the space of its texture; there is one where the material has a texture.
+    pub frame: Option<FrameId>,
     /// Which place in the source put it here. Not part of the hash: moving text does not change the picture.
     #[serde(skip)]
     pub origin: OriginId,
@@ -67,12 +79,12 @@ pub enum Material {
     /// Lambertian.
     Diffuse {
         /// Reflectance (albedo).
-        color: Rgb,
+        color: Paint,
     },
     /// Perfect specular reflection, the same at every angle.
     Mirror {
         /// Reflectance.
-        color: Rgb,
+        color: Paint,
     },
     /// Clear or frosted glass, water: refraction by Snell, reflection by Fresnel.
     Dielectric {
@@ -86,14 +98,14 @@ pub enum Material {
     /// A conductor: GGX with Schlick's Fresnel.
     Metal {
         /// Reflectance at normal incidence.
-        color: Rgb,
+        color: Paint,
         /// GGX α in [0, 1]; 0 is a perfect mirror.
         alpha: f64,
     },
     /// A dielectric coat over a Lambertian base, with internal reflection counted.
     Plastic {
         /// Reflectance (albedo) of the base.
-        color: Rgb,
+        color: Paint,
         /// Refractive index of the coat, at least 1.
         ior: f64,
         /// GGX α of the coat in [0, 1]; 0 is smooth.
@@ -103,6 +115,8 @@ pub enum Material {
     Emitter {
         /// Radiance in W/(m²·sr) a channel.
         radiance: Rgb,
+        /// What the radiance is multiplied with, place by place.
+        pattern: Option<TextureId>,
     },
 }
 
@@ -125,11 +139,23 @@ pub enum Light {
         /// The disc's angular radius in radians, [0, π/2]; 0 is a point, and then not seen.
         radius: f64,
     },
-    /// The same radiance from everywhere beyond the scene. There is at most one.
+    /// Radiance from everywhere beyond the scene. There is at most one.
     Sky {
         /// In W/(m²·sr) a channel.
         radiance: Rgb,
+        /// What the radiance is multiplied with, direction by direction.
+        panorama: Option<Panorama>,
     },
+}
+
+/// A picture of all directions: longitude across, latitude down (equirectangular). Seen from inside in its own
+/// space, its centre is −z, its top +y, and +x lies to the right of the centre.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Panorama {
+    /// The picture.
+    pub image: ImageId,
+    /// Turns, and maybe mirrors, directions of the world into the picture's space.
+    pub image_from_world: DMat3,
 }
 
 /// A perspective camera with a thin lens. `right`, `up` and `forward` are unit vectors at right angles, with
@@ -205,13 +231,36 @@ impl Scene {
             }
         }
         let any = Trace { target: Target::Samples(0), ..self.trace };
-        let parts = (&self.primitives, &self.materials, &self.lights, &self.camera, any);
+        let painted = (&self.textures, &self.images, &self.frames);
+        let parts = (&self.primitives, &self.materials, painted, &self.lights, &self.camera, any);
         postcard::serialize_with_flavor(&parts, Sink(blake3::Hasher::new()))
             .expect("the sink takes everything, and the scene has only sized parts")
+    }
+
+    /// The map from the world to a textured primitive's own space.
+    pub fn frame(&self, primitive: &Primitive) -> DAffine3 {
+        primitive.frame.map_or(DAffine3::IDENTITY, |id| self.frames[id.0 as usize])
     }
 
     /// The material of a primitive.
     pub fn material(&self, primitive: &Primitive) -> &Material {
         &self.materials[primitive.material.0 as usize]
+    }
+}
+
+impl Material {
+    /// The texture it is painted with.
+    pub fn texture(&self) -> Option<TextureId> {
+        match *self {
+            Material::Diffuse { color }
+            | Material::Mirror { color }
+            | Material::Metal { color, .. }
+            | Material::Plastic { color, .. } => match color {
+                Paint::Plain(_) => None,
+                Paint::Texture(id) => Some(id),
+            },
+            Material::Emitter { pattern, .. } => pattern,
+            Material::Dielectric { .. } => None,
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Whether one solid lies in another: what decides which of two dielectrics wins where they overlap.
 
 use super::Shape;
-use super::shape::{Form, Quadric};
+use super::shape::{Bounds, Form, Placed, Quadric};
 use crate::math::{DAffine3, DMat3, DVec3};
 
 /// By how much a solid may stick out of another and still lie in it, as a share of the outer one's size. A bubble
@@ -12,9 +12,9 @@ const SLACK: f64 = 1e-9;
 ///
 /// Yes is always true. It is said whenever it is true of a sphere in a sphere, of anything in a plane's half-space
 /// that has bounds or is a plane, and of quadrics about one common axis whose cross-sections have one shape, such as
-/// a thing and its enlarged copy about one centre. For other pairs it is said when the box around the inner one,
-/// along the axes of the outer one's object space, lies in the outer one; so a solid that fills much of another with
-/// other axes is not found to lie in it.
+/// a thing and its enlarged copy about one centre; also of anything in a box, and of a box in what is convex. For
+/// other pairs it is said when the box around the inner one, along the axes of the outer one's object space, lies in
+/// the outer one; so a solid that fills much of another with other axes is not found to lie in it.
 pub fn lies_in(inner: &Shape, outer: &Shape) -> bool {
     match (inner, outer) {
         (Shape::Sphere { center: a, radius: r }, Shape::Sphere { center: b, radius: s }) => {
@@ -31,6 +31,8 @@ pub fn lies_in(inner: &Shape, outer: &Shape) -> bool {
         }
         (_, Shape::Sphere { center, radius }) => in_quadric(inner, &Quadric::ball(*center, *radius)),
         (_, Shape::Quadric(outer)) => in_quadric(inner, outer),
+        (_, Shape::Box(outer)) => in_cuboid(inner, outer),
+        (_, Shape::Disk(_)) => false,
     }
 }
 
@@ -38,14 +40,68 @@ fn in_quadric(inner: &Shape, outer: &Quadric) -> bool {
     if inner.bounds().is_none() {
         return false;
     }
-    let inner = match inner {
-        Shape::Sphere { center, radius } => Quadric::ball(*center, *radius),
-        Shape::Quadric(quadric) => *quadric,
-        Shape::Plane { .. } => return false,
+    // The inner one is seen from the outer one's object space, where lengths are about 1.
+    let around = match as_quadric(inner) {
+        Some(inner) => {
+            let map = outer.object_from_world * inner.world_from_object;
+            if profile_lies_in(&inner, outer, map) {
+                return true;
+            }
+            seen(&inner, map)
+        }
+        None => match inner {
+            Shape::Box(placed) => {
+                let map = outer.object_from_world * placed.world_from_object;
+                if corners_lie_in(map, outer) {
+                    return true;
+                }
+                Some(Bounds::CUBE.mapped(&map))
+            }
+            _ => None,
+        },
     };
-    // The inner one, seen from the outer one's object space, where lengths are about 1.
-    let map = outer.object_from_world * inner.world_from_object;
-    profile_lies_in(&inner, outer, map) || box_lies_in(&inner, outer, map)
+    around.is_some_and(|bounds| box_lies_in(bounds, outer))
+}
+
+fn in_cuboid(inner: &Shape, outer: &Placed) -> bool {
+    let around = match (as_quadric(inner), inner) {
+        (Some(inner), _) => seen(&inner, outer.object_from_world * inner.world_from_object),
+        (None, Shape::Box(placed)) => {
+            Some(Bounds::CUBE.mapped(&(outer.object_from_world * placed.world_from_object)))
+        }
+        _ => None,
+    };
+    around.is_some_and(|bounds| bounds.min.abs().max(bounds.max.abs()).max_element() <= 1.0 + SLACK)
+}
+
+fn as_quadric(shape: &Shape) -> Option<Quadric> {
+    match shape {
+        Shape::Sphere { center, radius } => Some(Quadric::ball(*center, *radius)),
+        Shape::Quadric(quadric) => Some(**quadric),
+        _ => None,
+    }
+}
+
+/// The box around a quadric that a map carries elsewhere; none where it has no end.
+fn seen(quadric: &Quadric, map: DAffine3) -> Option<Bounds> {
+    let seen = Quadric { world_from_object: map, object_from_world: map.inverse(), ..*quadric };
+    Shape::Quadric(Box::new(seen)).bounds()
+}
+
+/// Whether the corners of a cube that a map carries to the object space of a quadric lie in it, and so all of the
+/// cube, since the quadric is convex.
+fn corners_lie_in(map: DAffine3, outer: &Quadric) -> bool {
+    let corner = |i: i32| {
+        let side = |bit: i32| if i & bit == 0 { -1.0 } else { 1.0 };
+        map.transform_point3(DVec3::new(side(1), side(2), side(4)))
+    };
+    let lies_in = |p: DVec3| outer.form.q(p) <= SLACK * (1.0 + p.length_squared()) && spans(outer, p.y, p.y);
+    let convex = match outer.form {
+        Form::Ellipsoid | Form::Paraboloid | Form::Cylinder => true,
+        Form::Cone => outer.high <= 0.0 || outer.low >= 0.0,
+        Form::OneSheet | Form::TwoSheet => false,
+    };
+    convex && (0..8).all(|i| lies_in(corner(i)))
 }
 
 /// Of quadrics about one axis: whether the inner one's cross-section at every height lies in the outer one's.
@@ -69,7 +125,8 @@ fn profile_lies_in(inner: &Quadric, outer: &Quadric, map: DAffine3) -> bool {
     let spare =
         |y: f64| outer.form.radius_squared(m.y_axis.y * y + t.y) - widening * inner.form.radius_squared(y);
     let curvature = -outer.form.y_sign() * m.y_axis.y * m.y_axis.y + widening * inner.form.y_sign();
-    let slope = -outer.form.y_sign() * m.y_axis.y * t.y;
+    let slope =
+        -m.y_axis.y * (outer.form.y_sign() * t.y + outer.form.y_slope()) + widening * inner.form.y_slope();
     inner.stretches().iter().filter(|[low, high]| low < high).all(|&[low, high]| {
         let turning = -slope / curvature;
         let least = if low < turning && turning < high { turning } else { low };
@@ -82,13 +139,11 @@ fn profile_lies_in(inner: &Quadric, outer: &Quadric, map: DAffine3) -> bool {
     })
 }
 
-/// Whether the box around the inner one, along the outer one's axes, lies in the outer one.
-fn box_lies_in(inner: &Quadric, outer: &Quadric, map: DAffine3) -> bool {
-    let seen = Quadric { world_from_object: map, object_from_world: map.inverse(), ..*inner };
-    let Some(bounds) = Shape::Quadric(seen).bounds() else { return false };
+/// Whether a box in the object space of a quadric lies in it.
+fn box_lies_in(bounds: Bounds, outer: &Quadric) -> bool {
     let far = bounds.min.abs().max(bounds.max.abs());
     let across = far.x * far.x + far.z * far.z;
-    // Where the outer one is narrowest over the box's heights: r² has its turning point at y = 0.
+    // Where the outer one is narrowest over the box's heights: r² is least at an end, or at y = 0.
     let crosses = bounds.min.y < 0.0 && 0.0 < bounds.max.y;
     let middle = if crosses { 0.0 } else { bounds.min.y };
     let narrowest = [bounds.min.y, bounds.max.y, middle]
@@ -132,7 +187,14 @@ mod tests {
     fn quadric(form: Form, matrix: DMat3, at: DVec3, [low, high]: [f64; 2]) -> Shape {
         let map = DAffine3 { matrix3: matrix, translation: at };
         let object_from_world = map.inverse();
-        Shape::Quadric(Quadric { form, world_from_object: map, object_from_world, low, high, capped: true })
+        Shape::Quadric(Box::new(Quadric {
+            form,
+            world_from_object: map,
+            object_from_world,
+            low,
+            high,
+            capped: true,
+        }))
     }
 
     /// Of few directions and sizes, so that some lie in each other and some touch.
@@ -147,6 +209,8 @@ mod tests {
             Shape::Plane { point: 2.0 * DVec3::Y, normal: DVec3::Y },
             Shape::Plane { point: -DVec3::Y, normal: DVec3::new(0.6, 0.8, 0.0) },
             quadric(Form::OneSheet, DMat3::IDENTITY, DVec3::ZERO, [-END, END]),
+            quadric(Form::Cylinder, DMat3::IDENTITY, DVec3::ZERO, [-END, END]),
+            quadric(Form::Paraboloid, DMat3::IDENTITY, -DVec3::Y, [-END, END]),
         ];
         for size in [0.2, 0.45, 0.9, 1.8] {
             for at in [DVec3::ZERO, DVec3::new(0.1, 0.5, 0.0), DVec3::new(0.0, -1.3, 0.0)] {
@@ -157,9 +221,15 @@ mod tests {
                         (Form::Ellipsoid, [-0.5, 0.8]),
                         (Form::OneSheet, [-1.1, 1.1]),
                         (Form::TwoSheet, [-2.0, 1.5]),
+                        (Form::Paraboloid, [-END, 1.0]),
+                        (Form::Cone, [-1.0, 0.0]),
+                        (Form::Cylinder, [0.0, 1.0]),
                     ] {
                         shapes.push(quadric(form, matrix * size, at, ends));
                     }
+                    let world_from_object = DAffine3::from_mat3_translation(0.8 * size * matrix, at);
+                    let object_from_world = world_from_object.inverse();
+                    shapes.push(Shape::Box(Box::new(Placed { world_from_object, object_from_world })));
                 }
             }
         }
@@ -218,13 +288,27 @@ mod tests {
             DVec3::new(-0.8, 0.6, 0.0),
             DVec3::new(0.0, 0.3, 2.0),
         );
-        for (form, ends) in
-            [(Form::Ellipsoid, [-END, END]), (Form::Ellipsoid, [-0.7, 0.7]), (Form::OneSheet, [-1.5, 1.5])]
-        {
+        for (form, ends) in [
+            (Form::Ellipsoid, [-END, END]),
+            (Form::Ellipsoid, [-0.7, 0.7]),
+            (Form::OneSheet, [-1.5, 1.5]),
+            (Form::Cylinder, [-1.0, 1.0]),
+        ] {
             let copy = |size: f64| quadric(form, matrix * size, DVec3::new(1.0, 2.0, 3.0), ends);
             assert!(lies_in(&copy(0.97), &copy(1.0)), "{form:?}");
             assert!(!lies_in(&copy(1.0), &copy(0.97)), "{form:?}");
         }
+        // A ball in a bowl and in a cone, and a die in a ball.
+        let ball = |y: f64, radius: f64| Shape::Sphere { center: y * DVec3::Y, radius };
+        let bowl = quadric(Form::Paraboloid, DMat3::IDENTITY, DVec3::ZERO, [-END, 2.0]);
+        assert!(lies_in(&ball(0.8, 0.7), &bowl) && !lies_in(&ball(0.2, 0.4), &bowl));
+        let cone = quadric(Form::Cone, DMat3::IDENTITY, DVec3::Y, [-1.0, 0.0]);
+        assert!(lies_in(&ball(0.35, 0.3), &cone) && !lies_in(&ball(0.5, 0.4), &cone));
+        let world_from_object = DAffine3::from_scale(DVec3::splat(0.57));
+        let object_from_world = world_from_object.inverse();
+        let die = Shape::Box(Box::new(Placed { world_from_object, object_from_world }));
+        assert!(lies_in(&die, &ball(0.0, 1.0)) && !lies_in(&die, &ball(0.0, 0.95)));
+        assert!(lies_in(&ball(0.0, 0.57), &die) && !lies_in(&ball(0.1, 0.57), &die));
         // Two bowls within two steeper ones of the same tips, but not within larger ones.
         let bowls = |x, y| {
             quadric(Form::TwoSheet, DMat3::from_diagonal(DVec3::new(x, y, x)), DVec3::ZERO, [-2.0, 2.0])

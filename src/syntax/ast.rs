@@ -44,7 +44,7 @@ pub struct Body {
 pub enum Entry {
     /// `name: value`
     Field(Field),
-    /// A thing or a definition. Boxed, since most entries are fields.
+    /// Anything else. Boxed, since most entries are fields.
     Statement(Box<Statement>),
     /// Text that could not be understood, and was reported. The name it seems to give counts as given.
     Broken(Broken),
@@ -68,9 +68,33 @@ pub struct Broken {
     pub span: Span,
 }
 
-/// A statement.
+/// A statement, with what stands before it.
 #[derive(Clone, Debug)]
-pub enum Statement {
+pub struct Statement {
+    /// The lines of the `///` comments above it, without the slashes; none where there are none.
+    pub doc: Option<SmolStr>,
+    /// `@off`, `@solo` and `@allow(…)`, in order.
+    pub prefixes: Vec<Prefix>,
+    /// The statement itself.
+    pub kind: StatementKind,
+    /// From its first word to its end, without doc and prefixes.
+    pub span: Span,
+}
+
+/// `@word` or `@word(argument, …)` before a statement.
+#[derive(Clone, Debug)]
+pub struct Prefix {
+    /// The word behind `@`.
+    pub name: Name,
+    /// What stands in its parentheses; none where it has none.
+    pub arguments: Option<Vec<Argument>>,
+    /// With the `@` and the parentheses.
+    pub span: Span,
+}
+
+/// The forms of a statement.
+#[derive(Clone, Debug)]
+pub enum StatementKind {
     /// `kind name? { … }`: a thing of the picture.
     Thing {
         /// The name it can be referred to by.
@@ -86,9 +110,88 @@ pub enum Statement {
         name: Name,
         /// As what.
         value: Expr,
-        /// The whole statement.
-        span: Span,
     },
+    /// `param name: type = default in low to high`.
+    Param {
+        /// What is set.
+        name: Name,
+        /// Its type.
+        ty: TypeName,
+        /// What it is where it is not set.
+        default: Expr,
+        /// What stands behind `in`: an expression with `to`.
+        range: Option<Expr>,
+    },
+    /// `part name { … }`
+    Part {
+        /// What it is used by.
+        name: Name,
+        /// Its params, definitions and members.
+        body: Body,
+    },
+    /// `import "file.rt" as name`
+    Import {
+        /// The path as written, escapes resolved, with the place of the text.
+        path: Name,
+        /// What it is used by.
+        name: Name,
+    },
+    /// `fn name(a: type, b: type) -> type = value`
+    Function {
+        /// What it is called by.
+        name: Name,
+        /// In order.
+        parameters: Vec<Parameter>,
+        /// Of what it gives.
+        result: TypeName,
+        /// What it gives.
+        value: Expr,
+    },
+    /// `for variable in list { … }`
+    For {
+        /// Stands for each item in turn.
+        variable: Name,
+        /// What is gone through.
+        list: Expr,
+        /// What is done with each.
+        body: Body,
+    },
+    /// `if condition { … } else { … }`. Behind `else` another `if` may stand: a body with that one statement.
+    If {
+        /// Which body it is.
+        condition: Expr,
+        /// Where it holds.
+        then: Body,
+        /// Where it does not.
+        otherwise: Option<Body>,
+    },
+    /// `assert condition, "message"`
+    Assert {
+        /// What must hold.
+        condition: Expr,
+        /// What is said where it does not.
+        message: Option<Expr>,
+    },
+}
+
+/// A type as written.
+#[derive(Clone, Debug)]
+pub enum TypeName {
+    /// `length`
+    Named(Name),
+    /// `[length]`: a list of them.
+    List(Box<TypeName>, Span),
+    /// Could not be understood, and was reported.
+    Invalid(Span),
+}
+
+/// `name: type` among what a function takes.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// What it is called inside.
+    pub name: Name,
+    /// Its type.
+    pub ty: TypeName,
 }
 
 /// The word a definition begins with.
@@ -103,12 +206,21 @@ pub enum Keyword {
 /// `kind { … }`
 #[derive(Clone, Debug)]
 pub struct Construct {
-    /// A built-in kind, or the name of a prototype.
-    pub kind: Name,
+    /// A built-in kind, or the path to a prototype, part or imported file.
+    pub kind: Path,
     /// Its fields, and its members where it is a group.
     pub body: Body,
     /// From the kind to the closing brace.
     pub span: Span,
+}
+
+/// `name` or `name.name…`
+#[derive(Clone, Debug)]
+pub struct Path {
+    /// Where the search begins.
+    pub first: Name,
+    /// Behind each point.
+    pub rest: Vec<Name>,
 }
 
 /// An expression.
@@ -156,12 +268,14 @@ pub enum ExprKind {
     Name(SmolStr),
     /// `(a, b)` or `(a, b, c)`: two components or more.
     Tuple(Vec<Expr>),
+    /// `[a, b]`
+    List(Vec<Expr>),
     /// `(a)`: kept for the formatter and for exact spans.
     Paren(Box<Expr>),
     /// `f(a, b: c)`
     Call {
-        /// The function's name.
-        function: Name,
+        /// The function's name, or the path to it in an imported file.
+        function: Path,
         /// Its arguments in order.
         arguments: Vec<Argument>,
     },
@@ -169,8 +283,24 @@ pub enum ExprKind {
     Member {
         /// What is looked into.
         value: Box<Expr>,
-        /// The component.
+        /// The component, field, or name inside.
         member: Name,
+    },
+    /// `value[index]`
+    Index {
+        /// The list.
+        value: Box<Expr>,
+        /// Which item, from 0.
+        index: Box<Expr>,
+    },
+    /// `if condition then value else value`
+    If {
+        /// Which value it is.
+        condition: Box<Expr>,
+        /// Where it holds.
+        then: Box<Expr>,
+        /// Where it does not.
+        otherwise: Box<Expr>,
     },
     /// `kind { … }` as a value: a prototype, not drawn.
     Construct(Box<Construct>),
@@ -212,7 +342,8 @@ pub enum UnaryOp {
     Not,
 }
 
-/// An operator between its operands, from the loosest to the tightest.
+/// An operator between its operands, from the loosest to the tightest. `if` stands between [`BinaryOp::Pipe`] and
+/// [`BinaryOp::Or`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum BinaryOp {
@@ -225,6 +356,7 @@ pub enum BinaryOp {
     LessEqual,
     Greater,
     GreaterEqual,
+    To,
     Add,
     Subtract,
     Multiply,
@@ -245,6 +377,7 @@ impl BinaryOp {
             LessEqual,
             Greater,
             GreaterEqual,
+            To,
             Add,
             Subtract,
             Multiply,
@@ -264,6 +397,7 @@ impl BinaryOp {
             BinaryOp::LessEqual => "<=",
             BinaryOp::Greater => ">",
             BinaryOp::GreaterEqual => ">=",
+            BinaryOp::To => "to",
             BinaryOp::Add => "+",
             BinaryOp::Subtract => "-",
             BinaryOp::Multiply => "*",

@@ -1,9 +1,12 @@
 //! Items to entries of the tree: what the grammar found, and what is said of its slips.
 
-use super::ast::{Body, Broken, Construct, Entry, Expr, ExprKind, Field, Keyword, Name, Statement};
+use super::ast::{
+    Body, Broken, Comment, Construct, Entry, Expr, ExprKind, Field, Keyword, Name, Path, Prefix, Statement,
+    StatementKind,
+};
 use super::cut::Item;
-use super::errors::{self, Sink};
-use super::{MAX_DEPTH, value};
+use super::errors::{self, Sink, statements};
+use super::{MAX_DEPTH, docs, statement, value};
 use crate::span::{SourceId, Span};
 use pest::Parser;
 use pest::iterators::{Pair, Pairs};
@@ -20,7 +23,7 @@ pub(super) type Node<'t> = Pair<'t, Rule>;
 /// A piece of the tree, and how many expressions lie inside each other in it.
 pub(super) type Deep<T> = (T, usize);
 
-/// The words that cannot be names, those of statements and operators still to come among them.
+/// The words that cannot be names.
 const RESERVED: &[&str] = &[
     "let", "material", "and", "or", "not", "true", "false", "param", "part", "import", "as", "for", "in",
     "if", "then", "else", "fn", "to", "assert",
@@ -31,8 +34,17 @@ pub(super) fn is_reserved(word: &str) -> bool {
     RESERVED.contains(&word)
 }
 
+/// The text that items were cut from.
+#[derive(Clone, Copy)]
+pub(super) struct Source<'t> {
+    pub(super) id: SourceId,
+    pub(super) text: &'t str,
+    /// All of its comments, in order.
+    pub(super) comments: &'t [Comment],
+}
+
 /// The entries of items.
-pub(super) fn items(source: SourceId, items: &[Item]) -> (Vec<Entry>, Sink) {
+pub(super) fn items(source: Source, items: &[Item]) -> (Vec<Entry>, Sink) {
     let mut entries = Vec::with_capacity(items.len());
     let mut sink = Sink::new();
     for item in items {
@@ -43,20 +55,20 @@ pub(super) fn items(source: SourceId, items: &[Item]) -> (Vec<Entry>, Sink) {
     (entries, sink)
 }
 
-/// The one expression that an item is, in a text of this length.
-pub(super) fn value(source: SourceId, length: usize, item: Option<&Item>) -> (Expr, Sink) {
+/// The one expression that an item is.
+pub(super) fn value(source: Source, item: Option<&Item>) -> (Expr, Sink) {
     match item {
         Some(item) => on_enough_stack(item, || value_of(source, item)),
         None => {
             let mut sink = Sink::new();
-            let span = Span::new(source, 0, length);
+            let span = Span::new(source.id, 0, source.text.len());
             sink.push(errors::missing_value("", span));
             (Expr { kind: ExprKind::Invalid, span }, sink)
         }
     }
 }
 
-fn entries_of(source: SourceId, item: &Item) -> (Vec<Entry>, Sink) {
+fn entries_of(source: Source, item: &Item) -> (Vec<Entry>, Sink) {
     let builder = Builder::new(source, item);
     let entries = if item.skipped {
         vec![builder.unread()]
@@ -70,7 +82,7 @@ fn entries_of(source: SourceId, item: &Item) -> (Vec<Entry>, Sink) {
     (entries, builder.sink.into_inner())
 }
 
-fn value_of(source: SourceId, item: &Item) -> (Expr, Sink) {
+fn value_of(source: Source, item: &Item) -> (Expr, Sink) {
     let builder = Builder::new(source, item);
     let mut expr = Expr { kind: ExprKind::Invalid, span: builder.whole() };
     if !item.skipped {
@@ -109,20 +121,37 @@ fn on_enough_stack<T: Send>(item: &Item, read: impl FnOnce() -> T + Send) -> T {
     })
 }
 
-fn value_in(entry: &Entry) -> Option<&ExprKind> {
+/// Whether a complaint about the end of an entry explains what follows on its line.
+fn ends_invalid(entry: &Entry) -> bool {
+    let invalid = |value: &Expr| matches!(value.kind, ExprKind::Invalid);
     match entry {
-        Entry::Field(field) => Some(&field.value.kind),
-        Entry::Statement(statement) => match statement.as_ref() {
-            Statement::Definition { value, .. } => Some(&value.kind),
-            Statement::Thing { .. } => None,
+        Entry::Field(field) => invalid(&field.value),
+        Entry::Broken(_) => false,
+        Entry::Statement(statement) => match &statement.kind {
+            StatementKind::Definition { value, .. } | StatementKind::Function { value, .. } => invalid(value),
+            StatementKind::Param { default, range, .. } => invalid(range.as_ref().unwrap_or(default)),
+            StatementKind::Assert { condition, message } => invalid(message.as_ref().unwrap_or(condition)),
+            // An empty span is that of a body which is missing.
+            StatementKind::Part { body, .. } | StatementKind::For { body, .. } => {
+                body.span.range().is_empty()
+            }
+            StatementKind::If { then, otherwise, .. } => {
+                otherwise.as_ref().unwrap_or(then).span.range().is_empty()
+            }
+            StatementKind::Import { name, .. } => name.span.range().is_empty(),
+            StatementKind::Thing { .. } => false,
         },
-        Entry::Broken(_) => None,
     }
+}
+
+fn is_statement(rule: Rule) -> bool {
+    use Rule::*;
+    matches!(rule, param | part | import | function | repetition | choice | assertion | unfinished)
 }
 
 /// Builds the tree of one item.
 pub(super) struct Builder<'t> {
-    source: SourceId,
+    source: Source<'t>,
     text: &'t str,
     base: usize,
     continued: bool,
@@ -132,7 +161,7 @@ pub(super) struct Builder<'t> {
 }
 
 impl<'t> Builder<'t> {
-    fn new(source: SourceId, item: &'t Item) -> Builder<'t> {
+    fn new(source: Source<'t>, item: &'t Item) -> Builder<'t> {
         let (sink, deep) = (RefCell::new(Sink::new()), Cell::new(false));
         Builder { source, text: &item.text, base: item.start, continued: item.continued, sink, deep }
     }
@@ -149,7 +178,7 @@ impl<'t> Builder<'t> {
 
     /// The span of a range of the item.
     pub(super) fn at(&self, start: usize, end: usize) -> Span {
-        Span::new(self.source, self.base + start, self.base + end)
+        Span::new(self.source.id, self.base + start, self.base + end)
     }
 
     pub(super) fn span(&self, pair: &Node) -> Span {
@@ -157,9 +186,31 @@ impl<'t> Builder<'t> {
         self.at(span.start(), span.end())
     }
 
+    /// The span without the white space at its end, which a rule takes that ends with something optional.
+    pub(super) fn trimmed(&self, pair: &Node) -> Span {
+        let span = pair.as_span();
+        self.at(span.start(), self.before(span.end()).len().max(span.start()))
+    }
+
+    /// The place just behind what stands before a pair.
+    pub(super) fn behind(&self, pair: &Node) -> Span {
+        let before = self.before(pair.as_span().start()).len();
+        self.at(before, before)
+    }
+
     /// The text before an offset, without white space at its end.
     pub(super) fn before(&self, offset: usize) -> &'t str {
         self.text[..offset].trim_ascii_end()
+    }
+
+    /// The text behind an offset.
+    pub(super) fn after(&self, offset: usize) -> &'t str {
+        &self.text[offset..]
+    }
+
+    /// Whether the item ends with `;` and the line goes on.
+    pub(super) fn continued(&self) -> bool {
+        self.continued
     }
 
     pub(super) fn name(&self, pair: &Node) -> Name {
@@ -221,7 +272,7 @@ impl<'t> Builder<'t> {
                         self.sink.borrow_mut().truncate(length);
                     }
                     explained = matches!(entry, Entry::Broken(_));
-                    explained_value = matches!(value_in(&entry), Some(ExprKind::Invalid));
+                    explained_value = ends_invalid(&entry);
                     deepest = deepest.max(depth);
                     entries.push(entry);
                 }
@@ -231,13 +282,19 @@ impl<'t> Builder<'t> {
     }
 
     fn entry(&self, pair: Node<'t>, top: bool) -> Deep<Entry> {
-        let (rule, span) = (pair.as_rule(), self.span(&pair));
+        let (rule, span) = (pair.as_rule(), self.trimmed(&pair));
+        if rule == Rule::marked {
+            return self.marked(pair, top);
+        }
         if matches!(rule, Rule::broken | Rule::reported) {
             self.unexpected(&pair, |token, span| match is_reserved(token) {
-                true => errors::reserved(token, span),
+                true => statements::begins_nothing(token, span),
                 false => errors::unexpected_entry(token, span, top),
             });
             return (Entry::Broken(Broken { name: None, span }), 0);
+        }
+        if is_statement(rule) {
+            return statement::statement(self, pair);
         }
         let mut inner = pair.into_inner();
         let first = inner.next().expect("every entry begins with a word");
@@ -255,66 +312,137 @@ impl<'t> Builder<'t> {
         }
     }
 
-    fn expression(&self, mut pairs: Pairs<'t, Rule>) -> Deep<Expr> {
+    pub(super) fn expression(&self, mut pairs: Pairs<'t, Rule>) -> Deep<Expr> {
         value::expression(self, pairs.next().expect("the grammar puts an expression here"))
     }
 
-    /// `kind { … }`, without a limit on its depth.
-    pub(super) fn construct(&self, kind: &Node, body: Node<'t>) -> Deep<Construct> {
-        let span = self.span(&body);
-        let (entries, depth) = self.entries(body.into_inner(), false);
-        let kind = self.name(kind);
-        let span_all = kind.span.to(span);
-        (Construct { kind, body: Body { entries, span }, span: span_all }, depth + 1)
+    /// An entry with `@off` and the like before it.
+    fn marked(&self, pair: Node<'t>, top: bool) -> Deep<Entry> {
+        let span = self.trimmed(&pair);
+        let (mut prefixes, mut deepest) = (vec![], 0);
+        for pair in pair.into_inner() {
+            if pair.as_rule() == Rule::mark {
+                let (prefix, depth) = self.prefix(pair);
+                deepest = deepest.max(depth);
+                prefixes.extend(prefix);
+                continue;
+            }
+            let (mut entry, depth) = self.entry(pair, top);
+            match &mut entry {
+                Entry::Statement(statement) => {
+                    statement.doc = docs::of(&self.source, span, statement.span);
+                    statement.prefixes = prefixes;
+                }
+                Entry::Field(field) => {
+                    if let Some(prefix) = prefixes.first() {
+                        let mark = format!("@{}", prefix.name.text);
+                        self.report(statements::marks_field(&mark, &field.name.text, prefix.span));
+                    }
+                }
+                Entry::Broken(broken) => broken.span = span,
+            }
+            return self.checked(entry, depth.max(deepest), span);
+        }
+        if let Some(last) = prefixes.last() {
+            self.report(statements::marks_nothing(&format!("@{}", last.name.text), last.span));
+        }
+        (Entry::Broken(Broken { name: None, span }), 0)
     }
 
-    fn thing(&self, kind: &Node<'t>, mut inner: Pairs<'t, Rule>, span: Span, top: bool) -> Deep<Entry> {
+    fn prefix(&self, pair: Node<'t>) -> Deep<Option<Prefix>> {
+        let span = self.trimmed(&pair);
+        let mut inner = pair.into_inner();
+        let Some(word) = inner.next().filter(|word| word.as_rule() == Rule::word) else {
+            self.report(statements::missing_mark(Span { end: span.start + 1, ..span }));
+            return (None, 0);
+        };
+        let name = self.name(&word);
+        let Some(arguments) = inner.next() else {
+            return (Some(Prefix { name, arguments: None, span }), 0);
+        };
+        let (arguments, depth) = value::arguments(self, arguments);
+        (Some(Prefix { name, arguments: Some(arguments), span }), depth)
+    }
+
+    /// `{ … }`
+    pub(super) fn body(&self, pair: Node<'t>) -> Deep<Body> {
+        let span = self.span(&pair);
+        let (entries, depth) = self.entries(pair.into_inner(), false);
+        (Body { entries, span }, depth + 1)
+    }
+
+    /// `kind { … }`, without a limit on its depth. The kind is given by its names.
+    pub(super) fn construct(&self, mut kind: Vec<Name>, body: Node<'t>) -> Deep<Construct> {
+        let (body, depth) = self.body(body);
+        let rest = kind.split_off(1);
+        let first = kind.pop().expect("a kind has a name");
+        for name in std::iter::once(&first).chain(&rest).filter(|name| is_reserved(&name.text)) {
+            self.report(errors::reserved(&name.text, name.span));
+        }
+        let span = first.span.to(body.span);
+        (Construct { kind: Path { first, rest }, body, span }, depth)
+    }
+
+    fn thing(&self, path: &Node<'t>, mut inner: Pairs<'t, Rule>, span: Span, top: bool) -> Deep<Entry> {
+        let kind: Vec<Name> = path.clone().into_inner().map(|word| self.name(&word)).collect();
         let next = inner.next().expect("a thing has a body");
         let (name, body) = match inner.next() {
-            Some(body) => (Some(next), body),
+            Some(body) => (Some(self.name(&next)), body),
             None => (None, next),
         };
-        let name_of = |name: &Node| self.name(name);
-        if is_reserved(kind.as_str()) {
-            return match &name {
-                Some(name) if kind.as_str() == "material" && !top => {
-                    self.report(errors::missing_colon("material", self.span(kind), self.span(name)));
-                    let (construct, depth) = self.construct(name, body);
+        let word = kind[0].clone();
+        if is_reserved(&word.text) {
+            return match name {
+                Some(name) if &word.text == "material" && !top && kind.len() == 1 => {
+                    self.report(errors::missing_colon("material", word.span, name.span));
+                    let (construct, depth) = self.construct(vec![name], body);
                     let value = Expr { span: construct.span, kind: ExprKind::Construct(Box::new(construct)) };
-                    self.checked(Entry::Field(Field { name: name_of(kind), value }), depth, span)
+                    self.checked(Entry::Field(Field { name: word, value }), depth, span)
                 }
-                _ => {
-                    let named = name.as_ref().map(name_of);
-                    self.report(match &named {
-                        Some(name) if matches!(kind.as_str(), "let" | "material") => {
-                            errors::missing_equals(kind.as_str(), &name.text, self.span(kind).to(name.span))
+                name => {
+                    self.report(match &name {
+                        Some(name) if matches!(word.text.as_str(), "let" | "material") => {
+                            errors::missing_equals(&word.text, &name.text, word.span.to(name.span))
                         }
-                        _ => errors::reserved(kind.as_str(), self.span(kind)),
+                        None if matches!(word.text.as_str(), "let" | "material") => {
+                            errors::missing_name(&word.text, word.span)
+                        }
+                        _ => statements::begins_nothing(&word.text, word.span),
                     });
                     // The body's own slips are still worth knowing.
-                    self.construct(kind, body);
-                    (Entry::Broken(Broken { name: named, span }), 0)
+                    self.body(body);
+                    (Entry::Broken(Broken { name, span }), 0)
                 }
             };
         }
         let (construct, depth) = self.construct(kind, body);
-        let name = name.as_ref().map(name_of);
         if let Some(name) = name.as_ref().filter(|name| is_reserved(&name.text)) {
             self.report(errors::reserved(&name.text, name.span));
         }
-        self.checked(Entry::Statement(Box::new(Statement::Thing { name, construct })), depth, span)
+        self.checked(self.plain(StatementKind::Thing { name, construct }, span), depth, span)
+    }
+
+    /// A statement with nothing before it but its doc.
+    pub(super) fn plain(&self, kind: StatementKind, span: Span) -> Entry {
+        let doc = docs::of(&self.source, span, span);
+        Entry::Statement(Box::new(Statement { doc, prefixes: vec![], kind, span }))
     }
 
     /// The entry, unless it is too deep.
-    fn checked(&self, entry: Entry, depth: usize, span: Span) -> Deep<Entry> {
+    pub(super) fn checked(&self, entry: Entry, depth: usize, span: Span) -> Deep<Entry> {
         if self.allows(depth, span) {
             return (entry, depth);
         }
         let name = match entry {
             Entry::Field(field) => Some(field.name),
-            Entry::Statement(statement) => match *statement {
-                Statement::Thing { name, .. } => name,
-                Statement::Definition { name, .. } => Some(name),
+            Entry::Statement(statement) => match statement.kind {
+                StatementKind::Thing { name, .. } => name,
+                StatementKind::Definition { name, .. }
+                | StatementKind::Param { name, .. }
+                | StatementKind::Part { name, .. }
+                | StatementKind::Import { name, .. }
+                | StatementKind::Function { name, .. } => Some(name),
+                StatementKind::For { .. } | StatementKind::If { .. } | StatementKind::Assert { .. } => None,
             },
             Entry::Broken(broken) => broken.name,
         };
@@ -334,96 +462,6 @@ impl<'t> Builder<'t> {
             self.report(errors::reserved(&name.text, name.span));
         }
         let keyword = if keyword.as_str() == "let" { Keyword::Let } else { Keyword::Material };
-        (Entry::Statement(Box::new(Statement::Definition { keyword, name, value, span })), depth)
-    }
-
-    // --- Slips ----------------------------------------------------------------------------------------------
-
-    /// `radius = 5cm`
-    fn equals(&self, word: &Node, mut inner: Pairs<'t, Rule>, span: Span, top: bool) -> Deep<Entry> {
-        let name = self.name(word);
-        let sign = inner.next().expect("this slip is about `=`");
-        let (value, depth) = self.expression(inner);
-        if word.as_str() == "let" || (top && word.as_str() == "material") {
-            self.report(errors::missing_name(word.as_str(), name.span));
-            return (Entry::Broken(Broken { name: None, span }), 0);
-        }
-        if is_reserved(&name.text) && &name.text != "material" {
-            self.report(errors::reserved(&name.text, name.span));
-        } else if top {
-            self.report(errors::missing_let(&name.text, name.span));
-        } else {
-            let edit = self.at(word.as_span().end(), sign.as_span().end());
-            self.report(errors::equals_in_field(&name.text, self.span(&sign), edit));
-            return (Entry::Field(Field { name, value }), depth);
-        }
-        (Entry::Broken(Broken { name: Some(name), span }), 0)
-    }
-
-    /// `let a 5`
-    fn undefined(&self, keyword: &Node, mut inner: Pairs<'t, Rule>, span: Span) -> Deep<Entry> {
-        let name = self.name(&inner.next().expect("this slip has a name"));
-        let place = self.span(keyword).to(name.span);
-        self.report(errors::missing_equals(keyword.as_str(), &name.text, place));
-        (Entry::Broken(Broken { name: Some(name), span }), 0)
-    }
-
-    /// `radius 50cm`
-    fn uncoloned(&self, word: &Node, mut inner: Pairs<'t, Rule>, span: Span, top: bool) -> Deep<Entry> {
-        let name = self.name(word);
-        let value = inner.next().expect("this slip has a value");
-        let value_span = self.at(value.as_span().start(), self.before(value.as_span().end()).len());
-        let field = &name.text == "material" && !top;
-        if is_reserved(&name.text) && !field {
-            self.report(errors::reserved(&name.text, name.span));
-        } else if !top {
-            self.report(errors::missing_colon(&name.text, name.span, value_span));
-            let (value, depth) = value::expression(self, value);
-            return (Entry::Field(Field { name, value }), depth);
-        } else if value.as_str().trim_end().bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') {
-            self.report(errors::missing_body(self.before(value.as_span().end()), value_span));
-        } else {
-            self.report(errors::no_brace(&name.text, name.span, value_span));
-        }
-        (Entry::Broken(Broken { name: Some(name), span }), 0)
-    }
-
-    /// `radius`
-    fn lone(&self, word: &Node, span: Span, top: bool) -> Entry {
-        let name = self.name(word);
-        self.report(match name.text.as_str() {
-            keyword @ ("let" | "material") if top || keyword == "let" => {
-                errors::missing_name(keyword, name.span)
-            }
-            word if is_reserved(word) && word != "material" => errors::reserved(word, name.span),
-            word if top => errors::missing_body(word, name.span),
-            word => errors::lone_name(word, name.span),
-        });
-        Entry::Broken(Broken { name: Some(name), span })
-    }
-
-    /// `;` where a comma or nothing should stand.
-    pub(super) fn semicolon(&self, pair: &Node) {
-        let rest = self.text[pair.as_span().end()..].trim_start_matches([' ', '\t', '\r']);
-        let ends = if rest.is_empty() { !self.continued } else { rest.starts_with(['\n', '}', ',', ')']) };
-        let replacement = if ends { "" } else { "," };
-        self.report(errors::semicolon(self.span(pair), replacement));
-    }
-
-    fn crowded(&self, pair: &Node) {
-        let start = pair.as_span().start();
-        let rest = &self.text[start..];
-        let skipped = rest.len() - rest.trim_start_matches([' ', '\t', '\r']).len();
-        let word = errors::first_token(&rest[skipped..]);
-        let start = start + skipped;
-        self.report(errors::crowded(word, self.at(start, start + word.len())));
-    }
-
-    fn stray(&self, pair: &Node) {
-        let span = self.span(pair);
-        match pair.as_str() {
-            ";" => self.report(errors::semicolon(span, "")),
-            sign => self.report(errors::stray_separator(span, sign)),
-        }
+        (self.plain(StatementKind::Definition { keyword, name, value }, span), depth)
     }
 }

@@ -5,8 +5,9 @@
 //! separate are blank, missing closers stand in the white space where they belong, and text that is past
 //! mending is *blotted* with [`BLOT`], which the grammar reads as a value that was already reported.
 //!
-//! A line end does not separate inside parentheses, behind an operator, `=` or `:`, and before a line that
-//! starts with a binary operator other than `-`, with `.member` or with `{`.
+//! A line end does not separate inside parentheses, behind an operator, `=`, `:` or a prefix such as `@off`, and
+//! before a line that starts with a binary operator other than `-`, with a word that goes on with a statement such
+//! as `else`, with `.member` or with `{`.
 
 use super::MAX_DEPTH;
 mod brackets;
@@ -79,6 +80,8 @@ enum Last {
     Definer,
     /// A separator or an opening bracket.
     Open,
+    /// `@off`: the statement may stand on the next line.
+    Prefix,
 }
 
 /// The inside of a bracket, or of no bracket at all.
@@ -93,6 +96,10 @@ struct Level {
     commas: usize,
     /// How many `<` stand where a value should: the slip `<x, y, z>` is open.
     angled: usize,
+    /// How many `if` since the last separator: each may hold the next.
+    ifs: usize,
+    /// Whether it holds the arguments of a prefix.
+    prefix: bool,
     /// Whether it holds the arguments of a function.
     call: bool,
     /// Whether a line ends behind the bracket: what it holds stands below it.
@@ -110,6 +117,8 @@ impl Level {
             operators: 0,
             commas: 0,
             angled: 0,
+            ifs: 0,
+            prefix: false,
             call: false,
             spread: false,
             forgiven: 0,
@@ -138,6 +147,8 @@ struct Cutter<'t> {
     last: Last,
     /// Whether a comma at the top level would have something before it.
     comma_allowed: bool,
+    /// Whether the item is an `assert` whose message may follow.
+    asserts: bool,
     /// Start of the item that is being read.
     item: Option<usize>,
     /// End of its last token.
@@ -172,6 +183,7 @@ impl<'t> Cutter<'t> {
             indent: 0,
             last: Last::Open,
             comma_allowed: false,
+            asserts: false,
             item: None,
             end: 0,
             edits: vec![],
@@ -226,7 +238,7 @@ impl<'t> Cutter<'t> {
         let byte = self.bytes[start];
         if self.levels.is_empty() && self.splits {
             match byte {
-                b',' if self.base.angled == 0 => return self.comma(),
+                b',' if self.base.angled == 0 && !self.message_follows() => return self.comma(),
                 b')' | b']' | b'}' => return self.stray_closer(),
                 _ => {}
             }
@@ -239,6 +251,7 @@ impl<'t> Cutter<'t> {
             b')' | b']' | b'}' => self.close(first_on_line),
             b'"' => self.string(),
             b'0'..=b'9' => self.number(),
+            b'@' => self.prefix(),
             b'#' => self.take(1 + self.word(start + 1).len(), Last::Operand),
             b',' | b';' => self.separator(),
             b'<' | b'>' => self.angle(byte),
@@ -262,10 +275,27 @@ impl<'t> Cutter<'t> {
     fn name(&mut self) -> Last {
         let word = self.word(self.at);
         let last = match word {
-            "and" | "or" | "not" => self.count_operator(),
+            "and" | "or" | "not" | "to" | "in" | "then" | "else" => self.count_operator(),
+            "if" => self.count_if(),
+            "assert" if self.levels.is_empty() && matches!(self.last, Last::Open | Last::Prefix) => {
+                self.asserts = true;
+                Last::Operand
+            }
             _ => Last::Operand,
         };
         self.take(word.len(), last)
+    }
+
+    /// `@off`, where a statement may begin.
+    fn prefix(&mut self) -> Last {
+        let last = if matches!(self.last, Last::Open | Last::Prefix) { Last::Prefix } else { Last::Operand };
+        self.take(1 + self.word(self.at + 1).len(), last)
+    }
+
+    /// Whether this comma stands between the condition of an `assert` and its message.
+    fn message_follows(&mut self) -> bool {
+        let rest = self.text[self.at + 1..].trim_ascii_start();
+        std::mem::take(&mut self.asserts) && rest.starts_with(['"', '('])
     }
 
     fn number(&mut self) -> Last {
@@ -296,19 +326,32 @@ impl<'t> Cutter<'t> {
         Last::Operator
     }
 
+    /// Each `if` may hold the next one without a bracket between them.
+    fn count_if(&mut self) -> Last {
+        self.level().ifs += 1;
+        self.nest();
+        Last::Operand
+    }
+
+    /// Counts one more thing that is nested without a bracket.
+    fn nest(&mut self) {
+        self.depth += 1;
+        let within = |level: &Level| level.ifs + level.angled;
+        let nested: usize = self.levels.iter().chain([&self.base]).map(within).sum();
+        if nested > MAX_DEPTH && !self.skipped {
+            self.skipped = true;
+            let place = self.span(self.at, self.at + 1);
+            self.out.sink.push(errors::deep_brackets(place));
+        }
+    }
+
     /// `<` and `>` compare, save around a triple, where they stand for parentheses.
     fn angle(&mut self, byte: u8) -> Last {
         let operand = self.last == Last::Operand;
         let level = self.level();
         if byte == b'<' && !operand {
             level.angled += 1;
-            let too_deep = level.angled > MAX_DEPTH;
-            self.depth += 1;
-            if too_deep && !self.skipped {
-                self.skipped = true;
-                let place = self.span(self.at, self.at + 1);
-                self.out.sink.push(errors::deep_brackets(place));
-            }
+            self.nest();
         } else if byte == b'>' && level.angled > 0 {
             level.angled -= 1;
             return self.take(1, Last::Operand);
@@ -318,14 +361,16 @@ impl<'t> Cutter<'t> {
 
     fn separator(&mut self) -> Last {
         let level = self.level();
-        level.operators = 0;
+        (level.operators, level.ifs) = (0, 0);
         level.commas += 1;
         if level.commas > MAX_VALUES && level.bracket != b'{' && !self.skipped {
             self.skipped = true;
             let place = self.span(self.at, self.at + 1);
             self.out.sink.push(errors::many_values(place, MAX_VALUES));
         }
-        self.take(1, Last::Open)
+        // The message of an `assert` may stand on the next line.
+        let message = self.bytes[self.at] == b',' && self.levels.is_empty() && self.splits;
+        self.take(1, if message { Last::Operator } else { Last::Open })
     }
 
     /// A comma outside all brackets ends an item.
@@ -377,6 +422,7 @@ impl<'t> Cutter<'t> {
         self.base = Level { forgiven, ..Level::new(0, start, self.indent) };
         self.end = start;
         self.skipped = false;
+        self.asserts = false;
         self.depth = 0;
     }
 

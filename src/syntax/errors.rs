@@ -1,5 +1,7 @@
 //! What is said of each slip: one small function a diagnostic.
 
+pub(super) mod statements;
+
 use super::MAX_DEPTH;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::span::Span;
@@ -68,7 +70,7 @@ fn unexpected(token: &str, span: Span) -> Diagnostic {
 pub(super) fn unexpected_value(token: &str, span: Span) -> Diagnostic {
     let diagnostic = unexpected(token, span).at("a value belongs here");
     match token {
-        "[" => diagnostic.help("several values stand in parentheses: `(0, 1, 0)m`"),
+        "]" => diagnostic.help("an index or the values of a list stand in brackets: `[0]`"),
         "{" => diagnostic.help("name the kind before the brace: `sphere { … }`"),
         "'" | "“" | "”" | "‘" | "’" => {
             diagnostic.help("text stands in straight double quotes: `\"text\"`")
@@ -92,18 +94,28 @@ pub(super) fn unexpected_extra(token: &str, span: Span) -> Diagnostic {
         "|" => diagnostic.help("write `or`, or `|>` to pass a placement on"),
         "^" => diagnostic.help("write `pow(a, b)`, or `a * a` for a square"),
         "?" => diagnostic.help("a choice is written `if … then … else …`"),
+        "if" => diagnostic.help("a choice is written `if … then … else …`"),
+        "then" => diagnostic.help("`then` belongs to an `if` before it"),
+        "else" | "elif" | "elseif" | "elsif" => {
+            diagnostic.help(format!("`{token}` belongs to an `if` before it: `if … {{ … }} else {{ … }}`"))
+        }
         ":" => diagnostic.help("one `:` stands between a field's name and its value"),
         _ => diagnostic.help("end the entry with a comma or a new line, or put an operator between the two"),
     }
 }
 
-/// Text behind a value inside parentheses.
-pub(super) fn unexpected_in_parentheses(token: &str, span: Span) -> Diagnostic {
-    let diagnostic = unexpected(token, span).at("a comma or `)` belongs before this");
+/// Text behind a value inside parentheses, or inside a list.
+pub(super) fn unexpected_in_brackets(token: &str, span: Span, closer: &str) -> Diagnostic {
+    let diagnostic = unexpected(token, span).at(format!("a comma or `{closer}` belongs before this"));
     match token {
         "°" => diagnostic.help("an angle is written `45deg`").fix(span, "deg"),
-        _ => diagnostic.help("separate the values in parentheses by commas"),
+        _ => diagnostic.help("separate the values by commas"),
     }
+}
+
+/// Text behind an index.
+pub(super) fn unexpected_in_index(token: &str, span: Span) -> Diagnostic {
+    unexpected(token, span).at("`]` belongs before this").help("an index is one whole number, from 0")
 }
 
 /// Text behind an expression that stands alone.
@@ -123,7 +135,9 @@ pub(super) fn unexpected_entry(token: &str, span: Span, top: bool) -> Diagnostic
         "-" => {
             diagnostic.help("a line goes on in the next one behind an operator: end the line above with `-`")
         }
-        _ if top => diagnostic.help("begin with a kind, as in `sphere { … }`, or with `let` or `material`"),
+        _ if top => {
+            diagnostic.help("begin with a kind, as in `sphere { … }`, or with `let`, `param` or `for`")
+        }
         _ => diagnostic.help("begin with a name, as in `radius: 5cm` or `sphere { … }`"),
     }
 }
@@ -138,28 +152,39 @@ pub(super) fn control(span: Span) -> Diagnostic {
     unexpected("\u{1}", span).at("invisible").help("delete it").fix(span, "")
 }
 
+/// What a word of the language does, for whoever meant it as a name.
+fn does(word: &str) -> &'static str {
+    match word {
+        "let" => "defines a value",
+        "material" => "defines a material",
+        "param" => "declares a setting",
+        "part" => "begins a part",
+        "import" => "takes in a file",
+        "as" => "names an imported file",
+        "for" => "repeats what its body holds",
+        "in" => "stands before a list or a range",
+        "if" => "chooses",
+        "then" => "stands before the value of an `if`",
+        "else" => "stands before the other choice of an `if`",
+        "fn" => "defines a function",
+        "to" => "stands between the ends of a range",
+        "assert" => "says what must hold",
+        "and" | "or" | "not" => "joins conditions",
+        _ => "is a value",
+    }
+}
+
 /// A word of the language where a name should stand.
 pub(super) fn reserved(word: &str, span: Span) -> Diagnostic {
-    let diagnostic = Diagnostic::new(
-        Code::E0001,
-        format!("`{word}` is a word of the language and cannot be a name"),
-        span,
-    )
-    .at("reserved");
-    match word {
-        "let" | "material" | "and" | "or" | "not" | "true" | "false" => {
-            diagnostic.help("choose another name")
-        }
-        _ => diagnostic
-            .help("this version keeps the word for later and does not know it yet; choose another name"),
-    }
+    let message = format!("`{word}` is a word of the language and cannot be a name");
+    Diagnostic::new(Code::E0001, message, span).at(format!("it {}", does(word))).help("choose another name")
 }
 
 /// A word of the language where a value should stand.
 pub(super) fn reserved_value(word: &str, span: Span) -> Diagnostic {
     unexpected(word, span)
         .at("a value belongs here")
-        .help(format!("`{word}` is a word of the language or kept for a later version, not a value"))
+        .help(format!("`{word}` is a word of the language: it {}", does(word)))
 }
 
 /// Nothing where a value should stand; `before` is what it should follow.
@@ -357,11 +382,13 @@ pub(super) fn angle_brackets(span: Span, open: Span, close: Span) -> Diagnostic 
         .fix(close, ")")
 }
 
-/// `a..b`
-pub(super) fn dots(dots: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0007, format!("a range is not written with `{dots}`"), span)
+/// `a..b`. `edit` is what `to` takes the place of, the white space around the points included. How a range without
+/// its end would be written is not certain.
+pub(super) fn dots(dots: &str, span: Span, edit: Span) -> Diagnostic {
+    let diagnostic = Diagnostic::new(Code::E0007, format!("a range is not written with `{dots}`"), span)
         .at("`to` is wanted")
-        .help("write `a to b`, which includes both ends")
+        .help("write `a to b`, which includes both ends");
+    if dots == "..<" { diagnostic } else { diagnostic.fix(edit, " to ") }
 }
 
 // --- E0008: malformed literals ----------------------------------------------------------------------------

@@ -2,12 +2,15 @@
 //!
 //! Parsing never fails: it returns a tree and what was wrong. Top-level items stand alone: `cut` finds
 //! them in one pass, each is then parsed by the grammar in `grammar/rt.pest` and turned into [`ast`] by
-//! `build` and `value`, a large text's items in parallel. What is said of slips is in `errors`.
+//! `build`, `statement` and `value`, a large text's items in parallel. What is said of slips is in `errors`.
 
 pub mod ast;
 mod build;
 mod cut;
+mod docs;
 mod errors;
+mod slips;
+mod statement;
 mod value;
 
 use crate::diagnostic::Diagnostic;
@@ -34,15 +37,16 @@ pub fn parse(source: SourceId, text: &str) -> (ast::File, Vec<Diagnostic>) {
     }
     let cut = cut::cut(source, text);
     let mut sink = cut.sink;
+    let found = build::Source { id: source, text, comments: &cut.comments };
     let mut entries = Vec::with_capacity(cut.items.len());
     let mut collect = |(built, slips)| {
         entries.extend::<Vec<ast::Entry>>(built);
         sink.append(slips);
     };
     if text.len() < PARALLEL {
-        collect(build::items(source, &cut.items));
+        collect(build::items(found, &cut.items));
     } else {
-        let built: Vec<_> = cut.items.par_chunks(1024).map(|chunk| build::items(source, chunk)).collect();
+        let built: Vec<_> = cut.items.par_chunks(1024).map(|chunk| build::items(found, chunk)).collect();
         built.into_iter().for_each(collect);
     }
     let file = ast::File { source, body: ast::Body { entries, span }, comments: cut.comments };
@@ -54,7 +58,8 @@ pub fn parse_expression(source: SourceId, text: &str) -> (ast::Expr, Vec<Diagnos
     let text = &text[..text.floor_char_boundary(MAX_SOURCE)];
     let cut = cut::whole(source, text);
     let mut sink = cut.sink;
-    let (expr, slips) = build::value(source, text.len(), cut.items.first());
+    let found = build::Source { id: source, text, comments: &cut.comments };
+    let (expr, slips) = build::value(found, cut.items.first());
     sink.append(slips);
     (expr, sink.into_sorted())
 }

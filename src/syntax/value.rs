@@ -1,8 +1,9 @@
 //! Expressions: the flat list that the grammar gives becomes a tree by precedence.
 
-use super::ast::{Argument, BinaryOp, Expr, ExprKind, Name, UnaryOp};
+use super::MAX_DEPTH;
+use super::ast::{Argument, BinaryOp, Expr, ExprKind, Name, Path, UnaryOp};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
-use super::{MAX_DEPTH, errors};
+use super::errors::{self, statements};
 use crate::span::Span;
 use pest::pratt_parser::{Assoc, Op, PrattParser};
 use smol_str::{SmolStr, SmolStrBuilder};
@@ -17,11 +18,11 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
         .op(left(Rule::and))
         .op(Op::prefix(Rule::not))
         .op(left(Rule::compare))
-        .op(left(Rule::dots))
+        .op(left(Rule::to) | left(Rule::dots))
         .op(left(Rule::sum))
         .op(left(Rule::product))
         .op(Op::prefix(Rule::negate))
-        .op(Op::postfix(Rule::member))
+        .op(Op::postfix(Rule::member) | Op::postfix(Rule::index))
 });
 
 fn binary(symbol: &str) -> Option<BinaryOp> {
@@ -43,7 +44,13 @@ pub(super) fn expression(builder: &Builder, pair: Node) -> Deep<Expr> {
     }
     // The parser calls itself for each operator of a row of prefixes.
     let mut row = 0;
+    let mut last = None;
     for pair in pairs.clone() {
+        if pair.as_rule() == Rule::conditional && last.is_some_and(|rule| rule != Rule::pipe) {
+            let place = builder.span(&pair);
+            builder.report(statements::loose_if(Span { end: place.start + 2, ..place }));
+        }
+        last = Some(pair.as_rule());
         row = if matches!(pair.as_rule(), Rule::negate | Rule::not) { row + 1 } else { 0 };
         if row >= MAX_DEPTH {
             builder.allows(row + 1, builder.span(&pair));
@@ -72,8 +79,11 @@ fn prefix(builder: &Builder, operator: &Node, (operand, depth): Deep<Expr>) -> D
 }
 
 fn postfix(builder: &Builder, (value, depth): Deep<Expr>, pair: Node) -> Deep<Expr> {
-    let place = builder.span(&pair);
+    let place = builder.trimmed(&pair);
     let span = value.span.to(place);
+    if pair.as_rule() == Rule::index {
+        return index(builder, value, depth, pair);
+    }
     let Some(word) = pair.into_inner().next() else {
         builder.report(errors::missing_member(place));
         return invalid(span);
@@ -82,13 +92,31 @@ fn postfix(builder: &Builder, (value, depth): Deep<Expr>, pair: Node) -> Deep<Ex
     checked(builder, Expr { kind, span }, depth + 1, place)
 }
 
+/// `value[index]`
+fn index(builder: &Builder, value: Expr, depth: usize, pair: Node) -> Deep<Expr> {
+    let place = builder.trimmed(&pair);
+    let span = value.span.to(place);
+    let mut inner = pair.into_inner();
+    let (mut index, deep) = expression(builder, inner.next().expect("the grammar puts an index here"));
+    if let Some(extra) = inner.next() {
+        builder.unexpected(&extra, errors::unexpected_in_index);
+        index.kind = ExprKind::Invalid;
+    }
+    let kind = ExprKind::Index { value: Box::new(value), index: Box::new(index) };
+    checked(builder, Expr { kind, span }, 1 + depth.max(deep), place)
+}
+
 fn infix(builder: &Builder, left: Deep<Expr>, operator: &Node, right: Deep<Expr>) -> Deep<Expr> {
     let ((left, left_depth), (right, right_depth)) = (left, right);
     let at = builder.span(operator);
     let span = left.span.to(right.span);
-    let Some(operator) = binary(operator.as_str()) else {
-        builder.report(errors::dots(operator.as_str(), at));
-        return invalid(span);
+    let operator = match binary(operator.as_str()) {
+        Some(operator) => operator,
+        None => {
+            let edit = Span { start: left.span.end, end: right.span.start.max(at.end), ..at };
+            builder.report(errors::dots(operator.as_str(), at, edit));
+            BinaryOp::To
+        }
     };
     let kind = ExprKind::Binary { operator, at, left: Box::new(left), right: Box::new(right) };
     checked(builder, Expr { kind, span }, 1 + left_depth.max(right_depth), at)
@@ -99,7 +127,9 @@ fn primary(builder: &Builder, pair: Node) -> Deep<Expr> {
     let leaf = |kind| (Expr { kind, span }, 1);
     match pair.as_rule() {
         Rule::literal => leaf(literal(builder, pair)),
-        Rule::reference => reference(builder, pair),
+        Rule::reference | Rule::head_reference => reference(builder, pair),
+        Rule::conditional => conditional(builder, pair),
+        Rule::list => list(builder, pair),
         Rule::group => group(builder, pair),
         Rule::color => leaf(color(builder, pair.as_str(), span)),
         Rule::text => leaf(ExprKind::Text(text(builder, &pair))),
@@ -108,8 +138,8 @@ fn primary(builder: &Builder, pair: Node) -> Deep<Expr> {
             builder.report(errors::bad_number(pair.as_str(), span));
             invalid(span)
         }
-        Rule::absent => absent(builder, &pair),
-        Rule::unexpected => {
+        Rule::absent | Rule::head_absent => absent(builder, &pair),
+        Rule::unexpected | Rule::head_unexpected => {
             builder.unexpected(&pair, errors::unexpected_value);
             invalid(span)
         }
@@ -146,27 +176,84 @@ fn reference(builder: &Builder, pair: Node) -> Deep<Expr> {
         (name, rest) if is_reserved(name) => {
             builder.report(errors::reserved_value(name, builder.span(&word)));
             match rest {
-                Some(body) if body.as_rule() == Rule::body => drop(builder.construct(&word, body)),
-                Some(arguments) => drop(elements(builder, arguments)),
-                None => {}
+                Some(body) if body.as_rule() == Rule::body => drop(builder.body(body)),
+                Some(arguments) if arguments.as_rule() == Rule::arguments => {
+                    drop(elements(builder, arguments))
+                }
+                _ => {}
             }
             invalid(builder.span(&word))
         }
         (name, None) => leaf(ExprKind::Name(SmolStr::new(name))),
-        (_, Some(body)) if body.as_rule() == Rule::body => {
-            let (construct, depth) = builder.construct(&word, body);
+        (_, Some(next)) => {
+            let mut kind = vec![builder.name(&word)];
+            let mut body = next;
+            for next in inner {
+                kind.push(builder.name(&body));
+                body = next;
+            }
+            if body.as_rule() == Rule::arguments {
+                return call(builder, kind, body, span);
+            }
+            let (construct, depth) = builder.construct(kind, body);
             let kind = ExprKind::Construct(Box::new(construct));
             checked(builder, Expr { kind, span }, depth, span)
         }
-        (_, Some(arguments)) => {
-            let elements = elements(builder, arguments);
-            let depth = elements.depth + 1;
-            let call_end = elements.unit.as_ref().map_or(span, |_| Span { end: elements.end, ..span });
-            let kind = ExprKind::Call { function: builder.name(&word), arguments: elements.arguments };
-            let (call, depth) = checked(builder, Expr { kind, span: call_end }, depth, span);
-            scaled(builder, call, depth, elements.unit, span)
-        }
     }
+}
+
+/// A call, behind the path to its function.
+fn call(builder: &Builder, mut path: Vec<Name>, arguments: Node, span: Span) -> Deep<Expr> {
+    let elements = elements(builder, arguments);
+    let depth = elements.depth + 1;
+    let call_end = elements.unit.as_ref().map_or(span, |_| Span { end: elements.end, ..span });
+    let rest = path.split_off(1);
+    let first = path.pop().expect("a function has a name");
+    let kind = ExprKind::Call { function: Path { first, rest }, arguments: elements.arguments };
+    let (call, depth) = checked(builder, Expr { kind, span: call_end }, depth, span);
+    scaled(builder, call, depth, elements.unit, span)
+}
+
+/// `if condition then value else value`
+fn conditional(builder: &Builder, pair: Node) -> Deep<Expr> {
+    let span = builder.trimmed(&pair);
+    let mut parts = pair
+        .into_inner()
+        .filter(|part| !matches!(part.as_rule(), Rule::if_word | Rule::then_word | Rule::else_word));
+    let (condition, depth) = expression(builder, parts.next().expect("the grammar puts a condition here"));
+    let known = !matches!(condition.kind, ExprKind::Invalid);
+    let Some(then) = parts.next() else {
+        if known {
+            builder.report(statements::missing_then(condition.span.after()));
+        }
+        return invalid(span);
+    };
+    if then.as_rule() == Rule::braces {
+        let place = builder.span(&then);
+        builder.report(statements::braces_in_value(Span { end: place.start + 1, ..place }));
+        return invalid(span);
+    }
+    let (then, then_depth) = expression(builder, then);
+    let Some(otherwise) = parts.next() else {
+        if !matches!(then.kind, ExprKind::Invalid) {
+            builder.report(statements::missing_else(then.span.after()));
+        }
+        return invalid(span);
+    };
+    let (otherwise, otherwise_depth) = expression(builder, otherwise);
+    let depth = 1 + depth.max(then_depth).max(otherwise_depth);
+    let span = span.to(otherwise.span);
+    let (condition, then, otherwise) = (Box::new(condition), Box::new(then), Box::new(otherwise));
+    checked(builder, Expr { kind: ExprKind::If { condition, then, otherwise }, span }, depth, span)
+}
+
+/// The arguments in the parentheses of a prefix, and their depth.
+pub(super) fn arguments(builder: &Builder, pair: Node) -> Deep<Vec<Argument>> {
+    let Elements { arguments, depth, unit, .. } = elements(builder, pair);
+    if let Some(unit) = unit {
+        builder.report(errors::unexpected_extra(&unit.text, unit.span));
+    }
+    (arguments, depth)
 }
 
 /// What stands between parentheses.
@@ -181,6 +268,7 @@ struct Elements {
 fn elements(builder: &Builder, pair: Node) -> Elements {
     let mut found = Elements { arguments: vec![], depth: 0, unit: None, end: builder.span(&pair).end };
     let mut name = None;
+    let closer = if pair.as_rule() == Rule::list { "]" } else { ")" };
     for pair in pair.into_inner() {
         match pair.as_rule() {
             Rule::label => name = Some(label(builder, pair)),
@@ -190,7 +278,7 @@ fn elements(builder: &Builder, pair: Node) -> Elements {
                 found.arguments.push(Argument { name: name.take(), value });
             }
             Rule::extra => {
-                builder.unexpected(&pair, errors::unexpected_in_parentheses);
+                builder.unexpected(&pair, |token, span| errors::unexpected_in_brackets(token, span, closer));
                 // What the value was to be is not known; nor is how many there were to be.
                 if let Some(last) = found.arguments.last_mut() {
                     last.value.kind = ExprKind::Invalid;
@@ -243,6 +331,17 @@ fn group(builder: &Builder, pair: Node) -> Deep<Expr> {
     };
     let (expr, depth) = checked(builder, Expr { kind, span }, depth + 1, span);
     scaled(builder, expr, depth, unit, outer)
+}
+
+/// `[a, b]`
+fn list(builder: &Builder, pair: Node) -> Deep<Expr> {
+    let span = builder.span(&pair);
+    let Elements { arguments, depth, .. } = elements(builder, pair);
+    for name in arguments.iter().filter_map(|argument| argument.name.as_ref()) {
+        builder.report(errors::label_outside_call(&name.text, name.span));
+    }
+    let values = arguments.into_iter().map(|argument| argument.value).collect();
+    checked(builder, Expr { kind: ExprKind::List(values), span }, depth + 1, span)
 }
 
 /// An expression with its unit behind the parenthesis, if there is one.
@@ -325,7 +424,7 @@ fn color(builder: &Builder, text: &str, span: Span) -> ExprKind {
 }
 
 /// The text between the quotes, its escapes resolved. An unknown one is reported and stands for itself.
-fn text(builder: &Builder, pair: &Node) -> SmolStr {
+pub(super) fn text(builder: &Builder, pair: &Node) -> SmolStr {
     let quoted = pair.as_str();
     let inside = &quoted[1..quoted.len() - 1];
     if !inside.contains('\\') {

@@ -4,6 +4,8 @@
 //! the constant term of its equation exactly zero. The root 0 is then the start itself and drops out, and the
 //! other root is exact however large the surface. So rooms of giant spheres show no acne and leak no light.
 
+mod cuboid;
+mod disk;
 mod plane;
 mod quadric;
 mod sphere;
@@ -40,6 +42,26 @@ pub enum Face {
     Low,
     /// The flat cap at a quadric's upper end.
     High,
+    /// A side of a box.
+    Wall(Wall),
+}
+
+/// A side of a box in object space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wall {
+    /// The axis that it is perpendicular to: 0, 1 or 2.
+    pub axis: u8,
+    /// Whether it is at the upper end of that axis.
+    pub upper: bool,
+}
+
+impl Wall {
+    /// The outward normal in object space.
+    pub fn normal(self) -> DVec3 {
+        let mut n = DVec3::ZERO;
+        n[usize::from(self.axis)] = if self.upper { 1.0 } else { -1.0 };
+        n
+    }
 }
 
 /// A point of a surface.
@@ -63,6 +85,8 @@ pub fn intersect(shape: &Shape, ray: &Ray, start: Option<Face>) -> Option<(f64, 
             plane::intersect(*point, *normal, ray, start.is_some()).map(|t| (t, Face::Side))
         }
         Shape::Quadric(quadric) => quadric::intersect(quadric, ray, start),
+        Shape::Disk(placed) => disk::intersect(placed, ray, start.is_some()).map(|t| (t, Face::Side)),
+        Shape::Box(placed) => cuboid::intersect(placed, ray, start),
     }
 }
 
@@ -78,5 +102,7 @@ pub fn surface_point(shape: &Shape, ray: &Ray, t: f64, face: Face) -> SurfacePoi
             SurfacePoint { p: near - normal.dot(near - *point) * *normal, n: *normal }
         }
         Shape::Quadric(quadric) => quadric::surface_point(quadric, near, face),
+        Shape::Disk(placed) => disk::surface_point(placed, near),
+        Shape::Box(placed) => cuboid::surface_point(placed, near, face),
     }
 }

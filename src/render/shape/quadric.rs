@@ -1,4 +1,4 @@
-//! Quadrics: ellipsoids and hyperboloids, cut by two planes, with or without caps.
+//! Quadrics about an axis, cut by two planes, with or without caps.
 
 use super::{Face, Ray, SurfacePoint};
 use crate::math::DVec3;
@@ -68,17 +68,18 @@ pub(super) fn intersect(quadric: &Quadric, ray: &Ray, start: Option<Face>) -> Op
 /// Solves A t² + 2B t + C = 0 where q takes the value A t² + 2B t + C at o + t d. A start on the surface makes C
 /// exactly zero.
 fn crossings(form: Form, o: DVec3, d: DVec3, on_it: bool) -> Crossings {
-    let s = form.y_sign();
+    let (s, h) = (form.y_sign(), form.y_slope());
     let a = d.x * d.x + s * d.y * d.y + d.z * d.z;
-    let b = o.x * d.x + s * o.y * d.y + o.z * d.z;
+    let b = o.x * d.x + (s * o.y + h) * d.y + o.z * d.z;
     let (first, second, c) = if on_it {
         (0.0, -2.0 * b / a, 0.0)
     } else {
         let c = form.q(o);
         // B² − AC. By Lagrange's identity its quadratic part is a form of o × d, which does not cancel for a
-        // small surface far away.
+        // small surface far away; so is what the linear part of q adds to it.
         let m = o.cross(d);
-        let discriminant = -(s * m.x * m.x + m.y * m.y + s * m.z * m.z) - a * form.constant();
+        let linear = h * (2.0 * (d.x * m.z - d.z * m.x) + h * d.y * d.y);
+        let discriminant = linear - (s * m.x * m.x + m.y * m.y + s * m.z * m.z) - a * form.constant();
         let q = -(b + discriminant.sqrt().copysign(b));
         (c / q, q / a, c)
     };
@@ -108,11 +109,16 @@ fn stretch(quadric: &Quadric, o: DVec3, d: DVec3, start: Option<Face>) -> Option
 pub(super) fn surface_point(quadric: &Quadric, near: DVec3, face: Face) -> SurfacePoint {
     let mut p = quadric.object_from_world.transform_point3(near);
     let gradient = match face {
-        Face::Side => {
+        Face::Side | Face::Wall(_) => {
             let slope = quadric.form.half_gradient(p);
-            let step = quadric.form.q(p) / (2.0 * slope.length_squared());
-            p -= step * slope;
-            quadric.form.half_gradient(p)
+            let squared = slope.length_squared();
+            if squared.is_normal() {
+                p -= quadric.form.q(p) / (2.0 * squared) * slope;
+            }
+            let slope = quadric.form.half_gradient(p);
+            // In the apex of a cone there is no slope: it points along the axis, out of the part that is left.
+            let apex = if quadric.low < 0.0 { DVec3::Y } else { DVec3::NEG_Y };
+            if slope.length_squared().is_normal() { slope } else { apex }
         }
         Face::Low => {
             p.y = quadric.low;

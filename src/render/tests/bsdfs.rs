@@ -77,9 +77,9 @@ fn furnace(material: Material, angle: f64) -> Scene {
 fn materials_that_lose_nothing_vanish_in_a_white_furnace() {
     for angle in [0.0, 0.8, 1.4] {
         assert_shows(&furnace(white(), angle), 64, 1.0, 1e-12);
-        assert_shows(&furnace(Material::Mirror { color: Rgb::ONE }, angle), 64, 1.0, 1e-12);
+        assert_shows(&furnace(Material::Mirror { color: Rgb::ONE.into() }, angle), 64, 1.0, 1e-12);
         for (alpha, slack) in [(0.0, 1e-6), (0.04, 3e-3), (0.3, 1e-3), (1.0, 1e-3)] {
-            let plastic = Material::Plastic { color: Rgb::ONE, ior: 1.5, alpha };
+            let plastic = Material::Plastic { color: Rgb::ONE.into(), ior: 1.5, alpha };
             assert_shows(&furnace(plastic, angle), 20_000, 1.0, slack);
         }
     }
@@ -141,7 +141,7 @@ fn ggx_albedo(angle: f64, alpha: f64, reflectance: impl Fn(f64) -> f64, refracti
 fn single_scattering_loses_what_its_integral_says() {
     for alpha in [0.1, 0.4, 1.0] {
         for angle in [0.2, 1.2] {
-            let metal = |f0: f64| Material::Metal { color: Rgb::splat(f0), alpha };
+            let metal = |f0: f64| Material::Metal { color: Rgb::splat(f0).into(), alpha };
             for f0 in [1.0, 0.5] {
                 let schlick = |c: f64| f0 + (1.0 - f0) * crate::math::pow(1.0 - c, 5.0);
                 let expected = ggx_albedo(angle, alpha, schlick, None);
@@ -154,7 +154,7 @@ fn single_scattering_loses_what_its_integral_says() {
             assert_shows(&furnace(frosted, angle), 40_000, expected, 1e-3);
         }
     }
-    let smooth = Material::Metal { color: Rgb::splat(0.5), alpha: 0.1 * SMOOTH_ALPHA };
+    let smooth = Material::Metal { color: Rgb::splat(0.5).into(), alpha: 0.1 * SMOOTH_ALPHA };
     assert_shows(&furnace(smooth, 0.9), 10, 0.5 + 0.5 * crate::math::pow(1.0 - cos(0.9), 5.0), 1e-9);
 }
 
@@ -199,7 +199,7 @@ fn total_reflection_lets_nothing_out() {
             .with(Shape::Plane { point: DVec3::ZERO, normal: DVec3::Y }, glass(1.33))
             .with(
                 Shape::Plane { point: -10.0 * DVec3::Y, normal: DVec3::Y },
-                Material::Diffuse { color: Rgb::ZERO },
+                Material::Diffuse { color: Rgb::ZERO.into() },
             )
             .with_sky(1.0);
         assert_shows(&water, 20_000, expected, 1e-9);

@@ -155,7 +155,7 @@ fn hostile_scenes_are_traced_to_an_end() {
         base().with(sphere(DVec3::ZERO, 1e30), glass(1.5)),
         base().with(sphere(DVec3::ZERO, 1e200), white()),
         base().with(sphere(DVec3::ZERO, 3.0), glass(1.5)),
-        base().with(sphere(DVec3::ZERO, 3.0), Material::Metal { color: Rgb::ONE, alpha: 0.3 }),
+        base().with(sphere(DVec3::ZERO, 3.0), Material::Metal { color: Rgb::ONE.into(), alpha: 0.3 }),
         base().with(Shape::Plane { point: at, normal: DVec3::Z }, glass(10.0)),
         base().with(sphere(DVec3::ZERO, 1.0), glass(10.0)).with(sphere(DVec3::ZERO, 0.5), glass(0.1)),
         base().with(floor(), white()).with_light(sun),

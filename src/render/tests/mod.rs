@@ -9,11 +9,12 @@ mod lights;
 mod numbers;
 mod reference;
 mod shapes;
+mod solids;
 
 use super::*;
 use crate::color::luminance;
 use crate::math::{DMat3, DVec2, DVec3, PI, pow};
-use crate::scene::shape::{Form, Quadric};
+use crate::scene::shape::{Form, Placed, Quadric};
 use crate::scene::{
     Camera, Develop, Filter, Light, MaterialId, OriginId, Primitive, PrimitiveId, Shape, Trace,
 };
@@ -25,6 +26,9 @@ fn scene(from: DVec3, look: DVec3) -> Scene {
     Scene {
         primitives: Vec::new(),
         materials: Vec::new(),
+        textures: Vec::new(),
+        images: Vec::new(),
+        frames: Vec::new(),
         lights: Vec::new(),
         camera: Camera {
             position: from,
@@ -52,6 +56,7 @@ impl Scene {
         self.primitives.push(Primitive {
             shape,
             material: MaterialId(self.materials.len() as u32),
+            frame: None,
             origin: OriginId(0),
         });
         self.materials.push(material);
@@ -64,7 +69,7 @@ impl Scene {
     }
 
     fn with_sky(self, radiance: f64) -> Scene {
-        self.with_light(Light::Sky { radiance: Rgb::splat(radiance) })
+        self.with_light(Light::Sky { radiance: Rgb::splat(radiance), panorama: None })
     }
 
     fn bounces(mut self, bounces: u32) -> Scene {
@@ -85,17 +90,22 @@ fn floor() -> Shape {
     Shape::Plane { point: DVec3::ZERO, normal: DVec3::Y }
 }
 
-fn quadric(form: Form, matrix: DMat3, at: DVec3, [low, high]: [f64; 2], capped: bool) -> Quadric {
+fn quadric(form: Form, matrix: DMat3, at: DVec3, [low, high]: [f64; 2], capped: bool) -> Box<Quadric> {
     let map = crate::math::DAffine3::from_mat3_translation(matrix, at);
-    Quadric { form, world_from_object: map, object_from_world: map.inverse(), low, high, capped }
+    Box::new(Quadric { form, world_from_object: map, object_from_world: map.inverse(), low, high, capped })
+}
+
+fn placed(matrix: DMat3, at: DVec3) -> Box<Placed> {
+    let map = crate::math::DAffine3::from_mat3_translation(matrix, at);
+    Box::new(Placed { world_from_object: map, object_from_world: map.inverse() })
 }
 
 fn white() -> Material {
-    Material::Diffuse { color: Rgb::ONE }
+    Material::Diffuse { color: Rgb::ONE.into() }
 }
 
 fn glow(radiance: f64) -> Material {
-    Material::Emitter { radiance: Rgb::splat(radiance) }
+    Material::Emitter { radiance: Rgb::splat(radiance), pattern: None }
 }
 
 fn glass(ior: f64) -> Material {

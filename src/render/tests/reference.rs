@@ -6,7 +6,7 @@ const SIZE: [u32; 2] = [320, 240];
 
 /// The scene of the reference.
 pub fn room() -> Scene {
-    let wall = |r, g, b| Material::Diffuse { color: Rgb::new(r, g, b) };
+    let wall = |r, g, b| Material::Diffuse { color: Rgb::new(r, g, b).into() };
     let mut scene = scene(v(0.0, 0.0, 55.0), v(0.0, 0.0, 54.0))
         .with(sphere(v(-1000.0, 0.0, 0.0), 940.0), wall(0.75, 0.15, 0.15))
         .with(sphere(v(1000.0, 0.0, 0.0), 940.0), wall(0.15, 0.75, 0.15))
@@ -15,7 +15,7 @@ pub fn room() -> Scene {
         .with(sphere(v(0.0, -1000.0, 0.0), 940.0), wall(0.5, 0.5, 0.5))
         .with(sphere(v(0.0, 1000.0, 0.0), 940.0), wall(0.5, 0.5, 0.5))
         .with(sphere(v(-20.0, -4.0, -8.0), 10.0), wall(0.8, 0.8, 0.8))
-        .with(sphere(v(0.0, 4.0, -18.0), 10.0), Material::Mirror { color: Rgb::splat(0.9) })
+        .with(sphere(v(0.0, 4.0, -18.0), 10.0), Material::Mirror { color: Rgb::splat(0.9).into() })
         .with(sphere(v(18.0, -6.0, 4.0), 10.0), glass(1.5))
         .with(sphere(v(-10.0, 20.0, 40.0), 5.0), glow(150.0))
         .bounces(7);

@@ -9,6 +9,7 @@ fn implicit(shape: &Shape, p: DVec3) -> f64 {
         Shape::Sphere { center, radius } => p.distance_squared(*center) / (radius * radius) - 1.0,
         Shape::Plane { point, normal } => normal.dot(p - *point),
         Shape::Quadric(quadric) => quadric.form.q(quadric.object_from_world.transform_point3(p)),
+        other => unreachable!("{other:?} is no quadric"),
     }
 }
 
@@ -54,6 +55,9 @@ fn search(shape: &Shape, ray: &Ray) -> Option<(f64, Face)> {
     hits.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
+const FORMS: [Form; 6] =
+    [Form::Ellipsoid, Form::OneSheet, Form::TwoSheet, Form::Paraboloid, Form::Cone, Form::Cylinder];
+
 fn shapes() -> Vec<Shape> {
     let skew = DMat3::from_cols(v(0.8, 0.5, 0.1), v(-0.4, 0.9, 0.2), v(0.1, -0.3, 1.2));
     let flip = DMat3::from_diagonal(v(0.5, -0.7, 1.0));
@@ -64,7 +68,7 @@ fn shapes() -> Vec<Shape> {
         sphere(v(3.0, 0.0, 0.0), 0.01),
         Shape::Plane { point: v(0.3, 0.1, -0.2), normal: v(0.6, 0.0, 0.8) },
     ];
-    for form in [Form::Ellipsoid, Form::OneSheet, Form::TwoSheet] {
+    for form in FORMS {
         for matrix in [DMat3::IDENTITY, skew, flip] {
             for (ends, capped) in [
                 ([-END, END], true),

@@ -16,8 +16,9 @@ impl Cutter<'_> {
             self.beyond += 1;
         } else {
             self.open[index(byte)] += 1;
-            let call = self.last == Last::Operand;
-            self.levels.push(Level { call, ..Level::new(byte, self.at, self.indent) });
+            let prefix = self.last == Last::Prefix;
+            let call = prefix || self.last == Last::Operand;
+            self.levels.push(Level { call, prefix, ..Level::new(byte, self.at, self.indent) });
             self.depth = self.depth.max(self.levels.len());
         }
         self.take(1, Last::Open)
@@ -33,6 +34,7 @@ impl Cutter<'_> {
             self.close_indented();
         }
         let opener = opener_of(closer);
+        let prefix = self.levels.last().is_some_and(|level| level.prefix && level.bracket == opener);
         let place = self.span(self.at, self.at + 1);
         match self.levels.last() {
             Some(level) if level.bracket == opener => self.pop(1),
@@ -63,7 +65,7 @@ impl Cutter<'_> {
                 self.edits.push((self.at..self.at + 1, b' '));
             }
         }
-        self.take(1, Last::Operand)
+        self.take(1, if prefix { Last::Prefix } else { Last::Operand })
     }
 
     fn pop(&mut self, count: usize) {

@@ -94,7 +94,7 @@ impl<'t> Cutter<'t> {
             self.edits.push((newline..newline + 1, b'\n'));
         }
         let level = self.level();
-        (level.operators, level.angled) = (0, 0);
+        (level.operators, level.angled, level.ifs) = (0, 0, 0);
         self.last = Last::Open;
     }
 
@@ -104,12 +104,13 @@ impl<'t> Cutter<'t> {
             return true;
         }
         match self.last {
-            Last::Operator | Last::Definer => !self.begins_field() && !self.begins_definition(),
+            Last::Prefix => true,
+            Last::Operator | Last::Definer => !self.begins_field() && !self.begins_statement(),
             Last::Operand | Last::Open => match (self.byte(self.at), self.byte(self.at + 1)) {
                 (b'+' | b'*' | b'/' | b'<' | b'>' | b'{', _) => true,
                 (b'|', b'>') | (b'=' | b'!', b'=') => true,
                 (b'.', next) => next.is_ascii_alphabetic() || next == b'_',
-                (b'a' | b'o', _) => matches!(self.word(self.at), "and" | "or"),
+                (b'a' | b'o' | b't' | b'e' | b'i', _) => self.goes_on(),
                 _ => false,
             },
         }
@@ -140,20 +141,36 @@ impl<'t> Cutter<'t> {
         self.word_and_next(self.at).is_some_and(|(_, next)| self.byte(next) == b':')
     }
 
-    /// `let name` or `material name`
-    fn begins_definition(&self) -> bool {
-        let named = |next| self.word_and_next(next).is_some_and(|(name, _)| !matches!(name, "and" | "or"));
-        self.word_and_next(self.at)
-            .is_some_and(|(word, next)| matches!(word, "let" | "material") && named(next))
+    /// A word in the middle of a statement: an operator, or one such as `else`.
+    fn goes_on(&self) -> bool {
+        let word = self.word(self.at);
+        let inside =
+            matches!(word, "and" | "or" | "to" | "in" | "as" | "then" | "else" | "elif" | "elseif" | "elsif");
+        inside && !matches!(self.byte(self.at + word.len()), b':' | b'=')
     }
 
-    /// `kind {`, `kind name {`, `name =` or `let name`
+    /// `let name`, `param name` and the like, `import "…"` or a prefix
+    fn begins_statement(&self) -> bool {
+        if self.byte(self.at) == b'@' {
+            return true;
+        }
+        let Some((word, next)) = self.word_and_next(self.at) else { return false };
+        match word {
+            "let" | "material" | "param" | "part" | "fn" | "for" => {
+                self.word_and_next(next).is_some_and(|(name, _)| !matches!(name, "and" | "or" | "to"))
+            }
+            "import" => self.byte(next) == b'"',
+            _ => false,
+        }
+    }
+
+    /// `kind {`, `kind name {`, `name =`, `let name` and the like
     fn begins_item(&self) -> bool {
         let Some((word, next)) = self.word_and_next(self.at) else { return false };
         let opens = |at| matches!(self.byte(at), b'{' | b'=') && self.byte(at + 1) != b'=';
         match self.word_and_next(next) {
-            Some((_, after)) => self.begins_definition() || opens(after),
-            None => opens(next) && !matches!(word, "and" | "or"),
+            Some((_, after)) => self.begins_statement() || opens(after),
+            None => self.begins_statement() || (opens(next) && !matches!(word, "and" | "or" | "else")),
         }
     }
 
@@ -163,7 +180,7 @@ impl<'t> Cutter<'t> {
         match self.last {
             Last::Operand => self.begins_item() || (self.begins_field() && !level.spread),
             Last::Open => self.end > level.at + 1 && self.begins_field() && !level.call,
-            Last::Operator | Last::Definer => false,
+            Last::Operator | Last::Definer | Last::Prefix => false,
         }
     }
 }

@@ -1,28 +1,8 @@
-//! Surfaces in world space, with what can be said of them without a ray: bounds, area, inside.
+//! Quadrics about an axis, cut by two planes, with or without caps.
 
+use super::Bounds;
 use crate::math::{DAffine3, DVec3, PI, cos, sin};
 use serde::Serialize;
-
-/// A surface. Normals point out of a closed solid; a plane's normal points out of the half-space it bounds.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub enum Shape {
-    /// A ball.
-    Sphere {
-        /// Centre.
-        center: DVec3,
-        /// Radius, above 0.
-        radius: f64,
-    },
-    /// The points p with `normal`·(p − `point`) = 0.
-    Plane {
-        /// Any of its points.
-        point: DVec3,
-        /// Unit vector out of the solid half-space.
-        normal: DVec3,
-    },
-    /// A canonical quadric of object space, carried to the world by an affine map.
-    Quadric(Quadric),
-}
 
 /// A quadric surface. In object space it is the points with q(p) = 0 and `low` ≤ y ≤ `high`, where q is
 /// [`Form::q`], negative inside.
@@ -42,7 +22,7 @@ pub struct Quadric {
     pub capped: bool,
 }
 
-/// Canonical quadrics about the y axis of object space: q(p) = x² + z² + s·y² + k.
+/// Canonical quadrics about the y axis of object space: q(p) = x² + z² + s·y² + 2h·y + k.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Form {
     /// x² + y² + z² − 1: a ball that a stretching map has made an ellipsoid.
@@ -51,6 +31,12 @@ pub enum Form {
     OneSheet,
     /// x² + z² − y² + 1: a hyperboloid of two sheets, tips at y = ±1.
     TwoSheet,
+    /// x² + z² − y: a paraboloid with its vertex at the origin, open upwards.
+    Paraboloid,
+    /// x² + z² − y²: a double cone with its apex at the origin; one that is cut there is a single one.
+    Cone,
+    /// x² + z² − 1: a cylinder.
+    Cylinder,
 }
 
 impl Form {
@@ -58,126 +44,39 @@ impl Form {
     pub fn y_sign(self) -> f64 {
         match self {
             Form::Ellipsoid => 1.0,
-            Form::OneSheet | Form::TwoSheet => -1.0,
+            Form::OneSheet | Form::TwoSheet | Form::Cone => -1.0,
+            Form::Paraboloid | Form::Cylinder => 0.0,
         }
+    }
+
+    /// Half the factor of y in q: h.
+    pub fn y_slope(self) -> f64 {
+        if self == Form::Paraboloid { -0.5 } else { 0.0 }
     }
 
     /// The constant k in q.
     pub fn constant(self) -> f64 {
         match self {
-            Form::Ellipsoid | Form::OneSheet => -1.0,
+            Form::Ellipsoid | Form::OneSheet | Form::Cylinder => -1.0,
             Form::TwoSheet => 1.0,
+            Form::Paraboloid | Form::Cone => 0.0,
         }
     }
 
     /// The quadratic function that is 0 on the surface and negative inside.
     pub fn q(self, p: DVec3) -> f64 {
-        p.x * p.x + p.z * p.z + self.y_sign() * p.y * p.y + self.constant()
+        p.x * p.x + p.z * p.z + (self.y_sign() * p.y + 2.0 * self.y_slope()) * p.y + self.constant()
     }
 
     /// Half the gradient of q: along the normal, outwards.
     pub fn half_gradient(self, p: DVec3) -> DVec3 {
-        DVec3::new(p.x, self.y_sign() * p.y, p.z)
+        DVec3::new(p.x, self.y_sign() * p.y + self.y_slope(), p.z)
     }
 
     /// The squared radius of the circle where the surface meets the plane at this height: negative where it
     /// does not.
     pub fn radius_squared(self, y: f64) -> f64 {
-        -self.constant() - self.y_sign() * y * y
-    }
-}
-
-/// An axis-aligned box.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
-    /// Least corner.
-    pub min: DVec3,
-    /// Greatest corner.
-    pub max: DVec3,
-}
-
-impl Bounds {
-    /// Contains nothing; the identity of [`Bounds::union`].
-    pub const EMPTY: Bounds = Bounds { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
-
-    /// The smallest box around both.
-    pub fn union(self, other: Bounds) -> Bounds {
-        Bounds { min: self.min.min(other.min), max: self.max.max(other.max) }
-    }
-
-    /// The point in the middle.
-    pub fn center(self) -> DVec3 {
-        0.5 * (self.min + self.max)
-    }
-
-    /// Edge lengths.
-    pub fn size(self) -> DVec3 {
-        self.max - self.min
-    }
-
-    /// Whether it contains no point.
-    pub fn is_empty(self) -> bool {
-        self.min.cmpgt(self.max).any()
-    }
-
-    /// Twice the area of its surface over two: the measure of the surface-area heuristic.
-    pub fn half_area(self) -> f64 {
-        let size = self.size();
-        size.x * size.y + size.y * size.z + size.z * size.x
-    }
-}
-
-impl Shape {
-    /// The box around it, or none for a surface without end.
-    pub fn bounds(&self) -> Option<Bounds> {
-        match self {
-            Shape::Sphere { center, radius } => {
-                Some(Bounds { min: *center - *radius, max: *center + *radius })
-            }
-            Shape::Plane { .. } => None,
-            Shape::Quadric(quadric) => quadric.bounds(),
-        }
-    }
-
-    /// How far it reaches along a unit vector beyond a point; none for a surface without end.
-    pub fn reach(&self, direction: DVec3, from: DVec3) -> Option<f64> {
-        match self {
-            Shape::Sphere { center, radius } => Some(direction.dot(*center - from) + radius),
-            Shape::Plane { .. } => None,
-            Shape::Quadric(quadric) => {
-                let origin = quadric.world_from_object.translation;
-                quadric.is_bounded().then(|| direction.dot(origin - from) + quadric.extent(direction))
-            }
-        }
-    }
-
-    /// Whether a point lies in the solid. A surface that encloses nothing has no inside.
-    pub fn contains(&self, p: DVec3) -> bool {
-        match self {
-            Shape::Sphere { center, radius } => p.distance_squared(*center) < radius * radius,
-            Shape::Plane { point, normal } => normal.dot(p - *point) < 0.0,
-            Shape::Quadric(quadric) => {
-                let o = quadric.object_from_world.transform_point3(p);
-                quadric.is_closed() && quadric.low < o.y && o.y < quadric.high && quadric.form.q(o) < 0.0
-            }
-        }
-    }
-
-    /// Whether it bounds a solid, so that it has an inside and an outside.
-    pub fn is_closed(&self) -> bool {
-        match self {
-            Shape::Sphere { .. } | Shape::Plane { .. } => true,
-            Shape::Quadric(quadric) => quadric.is_closed(),
-        }
-    }
-
-    /// The area in m² of one side of the surface, caps included; infinite for a surface without end.
-    pub fn area(&self) -> f64 {
-        match self {
-            Shape::Sphere { radius, .. } => 4.0 * PI * radius * radius,
-            Shape::Plane { .. } => f64::INFINITY,
-            Shape::Quadric(quadric) => quadric.area(),
-        }
+        -self.constant() - (self.y_sign() * y + 2.0 * self.y_slope()) * y
     }
 }
 
@@ -194,7 +93,8 @@ impl Quadric {
         const NOTHING: [f64; 2] = [0.0, 0.0];
         match self.form {
             Form::Ellipsoid => [[self.low.max(-1.0), self.high.min(1.0)], NOTHING],
-            Form::OneSheet => [[self.low, self.high], NOTHING],
+            Form::OneSheet | Form::Cone | Form::Cylinder => [[self.low, self.high], NOTHING],
+            Form::Paraboloid => [[self.low.max(0.0), self.high], NOTHING],
             Form::TwoSheet => [[self.low, self.high.min(-1.0)], [self.low.max(1.0), self.high]],
         }
         .map(|[low, high]| if low < high { [low, high] } else { NOTHING })
@@ -254,18 +154,18 @@ impl Quadric {
         sum * half * 2.0 * PI / ANGLES as f64
     }
 
-    fn area(&self) -> f64 {
+    pub(super) fn area(&self) -> f64 {
         let side: f64 = self.stretches().iter().map(|[low, high]| self.side_area(*low, *high)).sum();
         side + self.cap_areas().iter().sum::<f64>()
     }
 
     /// Whether it has an end in every direction.
-    fn is_bounded(&self) -> bool {
+    pub(super) fn is_bounded(&self) -> bool {
         self.stretches().iter().flatten().all(|y| y.is_finite())
     }
 
     /// The tight box: on each world axis the greatest value of a linear function on the surface.
-    fn bounds(&self) -> Option<Bounds> {
+    pub(super) fn bounds(&self) -> Option<Bounds> {
         if !self.is_bounded() {
             return None;
         }
@@ -277,7 +177,7 @@ impl Quadric {
     }
 
     /// How far a bounded one reaches along a direction of the world from where its map takes the origin.
-    fn extent(&self, direction: DVec3) -> f64 {
+    pub(super) fn extent(&self, direction: DVec3) -> f64 {
         let g = self.world_from_object.matrix3.transpose() * direction;
         self.stretches()
             .iter()
@@ -295,8 +195,10 @@ impl Quadric {
             Form::Ellipsoid => g.y / (g.y * g.y + radial * radial).sqrt(),
             // r is concave on each sheet: the best point lies where the sheet faces g, if it does.
             Form::TwoSheet => -g.y / (g.y * g.y - radial * radial).sqrt(),
-            // r is convex: the best point is at an end.
-            Form::OneSheet => f64::NAN,
+            // Where 2r·g.y = −|g.xz|.
+            Form::Paraboloid => 0.25 * (radial / g.y) * (radial / g.y),
+            // r is convex or straight: the best point is at an end.
+            Form::OneSheet | Form::Cone | Form::Cylinder => f64::NAN,
         };
         let inside = low < stationary && stationary < high;
         let best = value(low).max(value(high));
@@ -329,6 +231,18 @@ mod tests {
         let caps = 2.0 * PI * (1.0 + h * h);
         let area = quadric(Form::OneSheet, -h, h, DAffine3::IDENTITY).area();
         assert!((area / (side + caps) - 1.0).abs() < 1e-9, "{area}");
+        let map = DAffine3::from_scale(DVec3::new(2.0, 3.0, 2.0));
+        // A cone of radius 2 and height 3: π r √(r² + h²), and its base.
+        let cone = PI * 2.0 * 13.0f64.sqrt() + PI * 4.0;
+        let area = quadric(Form::Cone, -1.0, 0.0, map).area();
+        assert!((area / cone - 1.0).abs() < 1e-9, "{area}");
+        let area = quadric(Form::Cylinder, 0.0, 1.0, map).area();
+        assert!((area / (2.0 * PI * 2.0 * (3.0 + 2.0)) - 1.0).abs() < 1e-9, "{area}");
+        // A paraboloid: π r / (6 h²) · ((r² + 4h²)^(3/2) − r³), and its cap.
+        let power = |x: f64| x * x.sqrt();
+        let bowl = PI * 2.0 / (6.0 * 9.0) * (power(4.0 + 36.0) - 8.0) + PI * 4.0;
+        let area = quadric(Form::Paraboloid, f64::NEG_INFINITY, 1.0, map).area();
+        assert!((area / bowl - 1.0).abs() < 1e-7, "{area}");
     }
 
     #[test]
@@ -339,9 +253,11 @@ mod tests {
             DVec3::new(0.0, 0.3, 1.0),
         );
         let map = DAffine3::from_mat3_translation(turn, DVec3::new(5.0, -2.0, 1.0));
-        for form in [Form::Ellipsoid, Form::OneSheet, Form::TwoSheet] {
+        for form in
+            [Form::Ellipsoid, Form::OneSheet, Form::TwoSheet, Form::Paraboloid, Form::Cone, Form::Cylinder]
+        {
             let quadric = quadric(form, -1.4, 2.0, map);
-            let bounds = Shape::Quadric(quadric).bounds().unwrap();
+            let bounds = quadric.bounds().unwrap();
             let mut found = Bounds::EMPTY;
             for [low, high] in quadric.stretches() {
                 for i in 0..=2000 {

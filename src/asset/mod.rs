@@ -1,0 +1,6 @@
+//! The bytes of files to values: bounded in time and memory, whatever the bytes.
+
+pub mod image;
+pub mod table;
+
+pub use image::Image;

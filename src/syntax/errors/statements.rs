@@ -1,0 +1,218 @@
+//! What is said of statements that begin with a word of their own, and of what stands before them.
+
+use super::unexpected;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::span::Span;
+
+/// How the statement that begins with a word is written.
+fn form(word: &str) -> &'static str {
+    match word {
+        "param" => "param name: type = value",
+        "part" => "part name { … }",
+        "import" => "import \"file.rt\" as name",
+        "for" => "for name in list { … }",
+        "if" => "if condition { … } else { … }",
+        "fn" => "fn name(a: type) -> type = value",
+        "assert" => "assert condition, \"message\"",
+        "else" | "elif" => "if condition { … } else { … }",
+        "then" => "if condition then value else value",
+        "in" => "for name in list { … }",
+        "as" => "import \"file.rt\" as name",
+        "to" => "for name in low to high { … }",
+        "material" => "material name = value",
+        _ => "let name = value",
+    }
+}
+
+fn missing(what: &str, place: Span, word: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0001, what, place).help(format!("write `{}`", form(word)))
+}
+
+/// A statement of which too little can be told: `for (i in x) {`, `part`.
+pub(in crate::syntax) fn unfinished(word: &str, span: Span) -> Diagnostic {
+    missing(&format!("this `{word}` cannot be understood"), span, word).at("is written otherwise")
+}
+
+/// A word of the language with which no statement begins: `else { … }`.
+pub(in crate::syntax) fn begins_nothing(word: &str, span: Span) -> Diagnostic {
+    missing(&format!("unexpected `{word}`"), span, word).at("nothing begins with this word")
+}
+
+/// `param x = 5`, `fn f(a: number) = a`
+pub(in crate::syntax) fn missing_type(of: &str, place: Span, word: &str) -> Diagnostic {
+    missing(&format!("the type of {of} is missing"), place, word).at("a type belongs here, such as `length`")
+}
+
+/// `param x: 5`
+pub(in crate::syntax) fn not_a_type(text: &str, span: Span) -> Diagnostic {
+    unexpected(text, span)
+        .at("a type belongs here")
+        .help("a type is a word such as `number` or `length`, or a list as in `[color]`")
+}
+
+/// `param x int = 5`
+pub(in crate::syntax) fn missing_type_colon(name: &str, span: Span, ty: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0005, format!("`:` is missing after `{name}`"), span)
+        .at("what is declared")
+        .label(ty, "its type")
+        .help(format!("write `{name}: type`"))
+        .fix(span.after(), ":")
+}
+
+/// `param x: int`
+pub(in crate::syntax) fn missing_default(name: &str, place: Span) -> Diagnostic {
+    missing(&format!("`param {name}` has no default"), place, "param").at("`=` and a value belong here")
+}
+
+/// `:=` for `=`.
+pub(in crate::syntax) fn not_equals(word: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0003, format!("the value of this `{word}` follows `=`"), span)
+        .at("`=` is wanted")
+        .help(format!("write `{}`", form(word)))
+        .fix(span, "=")
+}
+
+/// `part stool`, `for i in list`, `if c`
+pub(in crate::syntax) fn missing_block(word: &str, place: Span) -> Diagnostic {
+    missing(&format!("the body of this `{word}` is missing"), place, word).at("`{ … }` belongs here")
+}
+
+/// `part stool = group { … }`
+pub(in crate::syntax) fn part_is_no_value(name: &str, sign: Span) -> Diagnostic {
+    unexpected("=", sign)
+        .at("the braces follow the name")
+        .help(format!("write `part {name} {{ … }}`, or `let {name} = …` for one thing"))
+}
+
+/// `for i = 0 to 3`; `sign` is empty where nothing stands between the two.
+pub(in crate::syntax) fn missing_in(sign: &str, span: Span) -> Diagnostic {
+    if sign.is_empty() {
+        return missing("`in` is missing after the name", span, "for")
+            .at("`in` belongs here")
+            .fix(span, " in");
+    }
+    unexpected(sign, span).at("`in` is wanted").help(format!("write `{}`", form("for"))).fix(span, "in")
+}
+
+/// `for i in x: {`
+pub(in crate::syntax) fn before_block(token: &str, span: Span) -> Diagnostic {
+    unexpected(token, span).at("the body should begin here").help("leave it out: `{` follows at once")
+}
+
+/// `elif`, `elseif`
+pub(in crate::syntax) fn else_if(word: &str, span: Span) -> Diagnostic {
+    unexpected(word, span).at("`else if` is wanted").help("write `else if`").fix(span, "else if")
+}
+
+/// `else` with neither braces nor `if` behind it.
+pub(in crate::syntax) fn missing_else_block(span: Span) -> Diagnostic {
+    missing("the body of this `else` is missing", span, "else").at("`{ … }` or `if` belongs behind this")
+}
+
+/// `if c then sphere {}` as a statement.
+pub(in crate::syntax) fn then_in_statement(span: Span) -> Diagnostic {
+    unexpected("then", span)
+        .at("`{` is wanted")
+        .help("`if … then … else …` is a value; a statement is written `if … { … } else { … }`")
+}
+
+/// `if c { 1 } else { 2 }` as a value.
+pub(in crate::syntax) fn braces_in_value(span: Span) -> Diagnostic {
+    unexpected("{", span).at("`then` is wanted").help("as a value, a choice is written `if … then … else …`")
+}
+
+/// `if c 1 else 2`, or nothing more.
+pub(in crate::syntax) fn missing_then(place: Span) -> Diagnostic {
+    missing("`then` is missing", place, "then").at("`then` and a value belong here")
+}
+
+/// `if c then 1`
+pub(in crate::syntax) fn missing_else(place: Span) -> Diagnostic {
+    missing("`else` is missing", place, "then").at("`else` and a value belong here: every value is something")
+}
+
+/// `1 + if …`
+pub(in crate::syntax) fn loose_if(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, "`if` behind an operator stands in parentheses", span)
+        .at("binds looser than the operator")
+        .help("write `1 + (if … then … else …)`")
+}
+
+/// `import lantern.rt as lantern`
+pub(in crate::syntax) fn bare_path(path: &str, span: Span) -> Diagnostic {
+    let diagnostic = Diagnostic::new(Code::E0001, "the path of a file stands in quotes", span)
+        .at("a text belongs here")
+        .help(format!("write `{}`", form("import")));
+    if path.ends_with(".rt") && !path.contains(['"', '\\', ' ', '\t', '\u{1}']) {
+        return diagnostic.fix(span, format!("\"{path}\""));
+    }
+    diagnostic
+}
+
+/// `import "lantern.rt"`; `name` is what the file is called, where that can be a name.
+pub(in crate::syntax) fn missing_as(name: Option<&str>, place: Span) -> Diagnostic {
+    let diagnostic = Diagnostic::new(Code::E0001, "the imported file has no name", place)
+        .at("`as` and a name belong here");
+    match name {
+        Some(name) => diagnostic.help(format!("write `as {name}`")).fix(place, format!(" as {name}")),
+        None => diagnostic.help(format!("write `{}`", form("import"))),
+    }
+}
+
+/// `as` with nothing behind it.
+pub(in crate::syntax) fn missing_import_name(place: Span) -> Diagnostic {
+    missing("a name is missing after `as`", place, "import").at("by what is it used?")
+}
+
+/// `fn f = 5`
+pub(in crate::syntax) fn missing_parameters(place: Span) -> Diagnostic {
+    missing("the parameters are missing", place, "fn").at("`(…)` belongs here, also where there are none")
+}
+
+/// `a: number = 3` among parameters.
+pub(in crate::syntax) fn in_parameters(token: &str, span: Span) -> Diagnostic {
+    unexpected(token, span)
+        .at("a comma or `)` belongs before this")
+        .help("each parameter is a name and a type: `a: length`")
+}
+
+/// `fn f(a: number): number`, `=>`
+pub(in crate::syntax) fn wrong_arrow(sign: &str, span: Span) -> Diagnostic {
+    unexpected(sign, span).at("`->` is wanted").help(format!("write `{}`", form("fn"))).fix(span, "->")
+}
+
+/// `fn f(a: number) -> number`
+pub(in crate::syntax) fn missing_function_value(name: &str, place: Span) -> Diagnostic {
+    missing(&format!("`fn {name}` has no value"), place, "fn").at("`=` and a value belong here")
+}
+
+/// `fn f() -> number { … }`
+pub(in crate::syntax) fn function_braces(span: Span) -> Diagnostic {
+    unexpected("{", span)
+        .at("`=` is wanted")
+        .help("the body of a function is one value: `fn name(a: type) -> type = value`")
+}
+
+/// `assert c "message"`
+pub(in crate::syntax) fn missing_comma(place: Span) -> Diagnostic {
+    missing("a comma is missing before the message", place, "assert").at("`,` belongs here").fix(place, ",")
+}
+
+/// `@` alone.
+pub(in crate::syntax) fn missing_mark(span: Span) -> Diagnostic {
+    unexpected("@", span).at("a word belongs behind this").help("there are `@off`, `@solo` and `@allow(…)`")
+}
+
+/// `@off` before nothing.
+pub(in crate::syntax) fn marks_nothing(mark: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("nothing follows `{mark}`"), span)
+        .at("before what?")
+        .help(format!("write it before a thing or a definition: `{mark} sphere {{ … }}`"))
+}
+
+/// `@off radius: 1m`
+pub(in crate::syntax) fn marks_field(mark: &str, field: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("`{mark}` stands before a field"), span)
+        .at("goes before a thing or a definition")
+        .help(format!("move it before what has the field `{field}`, or delete it"))
+}

@@ -1,0 +1,398 @@
+//! Statements that begin with a word of their own. The grammar takes what there is; here it is said what is
+//! missing.
+
+use super::ast::{Body, Broken, Entry, Expr, ExprKind, Name, Parameter, StatementKind, TypeName};
+use super::build::{Builder, Deep, Node, Rule, is_reserved};
+use super::errors::{self, statements as slips};
+use super::value;
+use crate::span::Span;
+use pest::iterators::Pairs;
+use smol_str::SmolStr;
+
+/// Whether a rule is a word of the language that only tells parts of a statement from each other.
+fn is_word(rule: Rule) -> bool {
+    use Rule::*;
+    matches!(
+        rule,
+        param_word | part_word | import_word | fn_word | for_word | if_word | assert_word | in_word
+    )
+}
+
+/// A statement, or what is left of one.
+pub(super) fn statement<'t>(builder: &Builder<'t>, pair: Node<'t>) -> Deep<Entry> {
+    let span = builder.trimmed(&pair);
+    let rule = pair.as_rule();
+    let mut parts = pair.into_inner();
+    if rule != Rule::unfinished && parts.peek().is_some_and(|part| is_word(part.as_rule())) {
+        parts.next();
+    }
+    let (kind, depth) = match rule {
+        Rule::param => param(builder, parts, span),
+        Rule::part => part(builder, parts, span),
+        Rule::import => import(builder, parts, span),
+        Rule::function => function(builder, parts, span),
+        Rule::repetition => repetition(builder, parts, span),
+        Rule::choice => choice(builder, parts, span),
+        Rule::assertion => assertion(builder, parts),
+        _ => return (unfinished(builder, parts, span), 0),
+    };
+    builder.checked(builder.plain(kind, span), depth, span)
+}
+
+fn unfinished<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> Entry {
+    let word = parts.next().expect("an unfinished statement begins with its word");
+    builder.report(slips::unfinished(word.as_str(), builder.span(&word)));
+    // The body's own slips are still worth knowing.
+    parts.filter(|part| part.as_rule() == Rule::body).for_each(|body| drop(builder.body(body)));
+    Entry::Broken(Broken { name: None, span })
+}
+
+/// The name that a statement gives, with a complaint where it is none.
+fn declared(builder: &Builder, pair: Option<Node>) -> Name {
+    let name = builder.name(&pair.expect("the grammar puts a name here"));
+    if is_reserved(&name.text) {
+        builder.report(errors::reserved(&name.text, name.span));
+    }
+    name
+}
+
+fn invalid(span: Span) -> Expr {
+    Expr { kind: ExprKind::Invalid, span }
+}
+
+fn empty(span: Span) -> Body {
+    Body { entries: vec![], span }
+}
+
+// --- Settings, parts and files -----------------------------------------------------------------------------
+
+fn param<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> Deep<StatementKind> {
+    let name = declared(builder, parts.next());
+    let annotation = parts.next().expect("the grammar puts an annotation here");
+    let has_colon = annotation.as_str().starts_with(':');
+    let inner = annotation.into_inner().next().expect("an annotation holds a type");
+    let absent = inner.as_rule() == Rule::type_absent;
+    let named = matches!(inner.as_rule(), Rule::type_name | Rule::type_list);
+    let of = format!("`{}`", name.text);
+    if !has_colon && named {
+        builder.report(slips::missing_type_colon(&name.text, name.span, builder.trimmed(&inner)));
+    }
+    let ty = type_name(builder, inner, &of, "param");
+    let (mut default, mut range) = (None, None);
+    let mut depth = 0;
+    let mut in_range = false;
+    for part in parts {
+        match part.as_rule() {
+            Rule::assign => assigned(builder, &part, "param"),
+            Rule::in_word => in_range = true,
+            _ => {
+                let (value, deep) = value::expression(builder, part);
+                depth = depth.max(deep);
+                if in_range { range = Some(value) } else { default = Some(value) }
+            }
+        }
+    }
+    let default = default.unwrap_or_else(|| {
+        let place = range.as_ref().map_or(span.after(), |_: &Expr| name.span.after());
+        // Without a type, the slip is that nothing stands behind the name.
+        if !absent && !matches!(ty, TypeName::Invalid(_)) {
+            builder.report(slips::missing_default(&name.text, place));
+        }
+        invalid(place)
+    });
+    (StatementKind::Param { name, ty, default, range }, depth + 1)
+}
+
+/// `:=` where `=` should stand.
+fn assigned(builder: &Builder, sign: &Node, word: &str) {
+    if sign.as_str() != "=" {
+        builder.report(slips::not_equals(word, builder.span(sign)));
+    }
+}
+
+fn part<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> Deep<StatementKind> {
+    let name = declared(builder, parts.next());
+    let (body, depth) = match parts.next() {
+        Some(body) if body.as_rule() == Rule::body => builder.body(body),
+        Some(sign) => {
+            builder.report(slips::part_is_no_value(&name.text, builder.span(&sign)));
+            parts.for_each(|value| drop(value::expression(builder, value)));
+            (empty(span.after()), 0)
+        }
+        None => {
+            builder.report(slips::missing_block("part", span.after()));
+            (empty(span.after()), 0)
+        }
+    };
+    (StatementKind::Part { name, body }, depth)
+}
+
+fn import<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> Deep<StatementKind> {
+    let written = parts.next().expect("an import has a path");
+    let place = builder.trimmed(&written);
+    let quoted = written.as_rule() == Rule::text;
+    let text = match quoted {
+        true => value::text(builder, &written),
+        false => SmolStr::new(written.as_str().trim_ascii_end()),
+    };
+    if !quoted && !text.contains('\u{1}') {
+        builder.report(slips::bare_path(&text, place));
+    }
+    let path = Name { text, span: place };
+    let name = match (parts.next(), parts.next()) {
+        (Some(_), Some(name)) => declared(builder, Some(name)),
+        (given, _) => {
+            match given {
+                Some(_) => builder.report(slips::missing_import_name(span.after())),
+                None if quoted => builder.report(slips::missing_as(stem(&path.text), place.after())),
+                None => {}
+            }
+            let name = stem(&path.text).unwrap_or("");
+            Name { text: SmolStr::new(name), span: place.after() }
+        }
+    };
+    (StatementKind::Import { path, name }, 1)
+}
+
+/// What a file is called, if that can be a name.
+fn stem(path: &str) -> Option<&str> {
+    let file = path.rsplit('/').next()?;
+    let stem = file.strip_suffix(".rt")?;
+    let is_name = stem.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+        && stem.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
+        && !is_reserved(stem);
+    is_name.then_some(stem)
+}
+
+// --- Functions ---------------------------------------------------------------------------------------------
+
+fn function<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Span) -> Deep<StatementKind> {
+    let mut parts = parts.peekable();
+    let name = declared(builder, parts.next());
+    let mut place = name.span;
+    let mut parameters = vec![];
+    // One complaint about the head is enough.
+    let mut complete = true;
+    match parts.next_if(|part| part.as_rule() == Rule::parameters) {
+        Some(pair) => {
+            place = builder.trimmed(&pair);
+            parameters = self::parameters(builder, pair);
+        }
+        None => {
+            complete = false;
+            builder.report(slips::missing_parameters(place.after()));
+        }
+    }
+    let mut result = TypeName::Invalid(place.after());
+    match parts.next_if(|part| part.as_rule() == Rule::arrow) {
+        Some(arrow) => {
+            let sign = arrow.as_str().trim_ascii_end();
+            if sign != "->" {
+                builder.report(slips::wrong_arrow(sign, builder.trimmed(&arrow)));
+            }
+            result = type_name(builder, parts.next().expect("a type follows"), "the result", "fn");
+        }
+        None if complete => {
+            complete = false;
+            builder.report(slips::missing_type("the result", place.after(), "fn"));
+        }
+        None => {}
+    }
+    let (value, depth) = match (parts.next(), parts.next()) {
+        (Some(sign), Some(value)) => {
+            assigned(builder, &sign, "fn");
+            value::expression(builder, value)
+        }
+        (Some(body), None) => {
+            let place = builder.span(&body);
+            builder.report(slips::function_braces(Span { end: place.start + 1, ..place }));
+            (invalid(place), 0)
+        }
+        _ => {
+            if complete {
+                builder.report(slips::missing_function_value(&name.text, span.after()));
+            }
+            (invalid(span.after()), 0)
+        }
+    };
+    (StatementKind::Function { name, parameters, result, value }, depth + 1)
+}
+
+fn parameters(builder: &Builder, pair: Node) -> Vec<Parameter> {
+    let mut found = vec![];
+    for pair in pair.into_inner() {
+        if pair.as_rule() == Rule::semicolon {
+            builder.semicolon(&pair);
+            continue;
+        }
+        let mut inner = pair.into_inner().peekable();
+        let mut parameter = inner.next_if(|part| part.as_rule() == Rule::word).map(|name| {
+            let name = declared(builder, Some(name));
+            let ty = TypeName::Invalid(name.span.after());
+            Parameter { name, ty }
+        });
+        let mut typed = false;
+        for part in inner {
+            match (&mut parameter, part.as_rule()) {
+                (_, Rule::beyond) => {
+                    typed = true;
+                    builder.unexpected(&part, slips::in_parameters);
+                }
+                (Some(parameter), _) => {
+                    typed = true;
+                    let of = format!("`{}`", parameter.name.text);
+                    parameter.ty = type_name(builder, part, &of, "fn");
+                }
+                (None, _) => {}
+            }
+        }
+        if let Some(parameter) = &parameter
+            && !typed
+        {
+            let of = format!("`{}`", parameter.name.text);
+            builder.report(slips::missing_type(&of, parameter.name.span.after(), "fn"));
+        }
+        found.extend(parameter);
+    }
+    found
+}
+
+/// A type, of what is said in `of` in the statement that begins with `word`.
+fn type_name(builder: &Builder, pair: Node, of: &str, word: &str) -> TypeName {
+    let span = builder.trimmed(&pair);
+    match pair.as_rule() {
+        Rule::type_name => {
+            let name = builder.name(&pair.into_inner().next().expect("the type has a name"));
+            if is_reserved(&name.text) && &name.text != "material" {
+                builder.report(slips::not_a_type(&name.text, name.span));
+                return TypeName::Invalid(name.span);
+            }
+            TypeName::Named(name)
+        }
+        Rule::type_list => {
+            let inner = pair.into_inner().next().expect("the list has a type");
+            TypeName::List(Box::new(type_name(builder, inner, of, word)), span)
+        }
+        Rule::type_absent => {
+            let place = builder.behind(&pair);
+            builder.report(slips::missing_type(of, place, word));
+            TypeName::Invalid(place)
+        }
+        _ => {
+            builder.unexpected(&pair, slips::not_a_type);
+            TypeName::Invalid(span)
+        }
+    }
+}
+
+// --- Repetition and choice ---------------------------------------------------------------------------------
+
+fn repetition<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Span) -> Deep<StatementKind> {
+    let mut parts = parts.peekable();
+    let variable = declared(builder, parts.next());
+    match parts.next_if(|part| part.as_rule() == Rule::binder) {
+        Some(binder) if binder.as_str() == "in" => {}
+        Some(sign) => builder.report(slips::missing_in(sign.as_str(), builder.span(&sign))),
+        None if parts.peek().is_some_and(|head| head.as_str().trim_ascii().is_empty()) => {
+            let place = Span { end: span.start + 3, ..span };
+            builder.report(slips::unfinished("for", place));
+            let list = invalid(variable.span.after());
+            let body = empty(span.after());
+            return (StatementKind::For { variable, list, body }, 1);
+        }
+        None => builder.report(slips::missing_in("", variable.span.after())),
+    }
+    let (list, depth) = value::expression(builder, parts.next().expect("`for` has a head"));
+    let (body, deep) = block(builder, &mut parts, "for", &list, span);
+    (StatementKind::For { variable, list, body }, depth.max(deep) + 1)
+}
+
+/// The body behind a head, with a complaint where it is missing or something stands before it.
+fn block<'t>(
+    builder: &Builder<'t>,
+    parts: &mut std::iter::Peekable<Pairs<'t, Rule>>,
+    word: &str,
+    head: &Expr,
+    span: Span,
+) -> Deep<Body> {
+    let known = !matches!(head.kind, ExprKind::Invalid);
+    if let Some(before) = parts.next_if(|part| part.as_rule() == Rule::before_body)
+        && known
+    {
+        builder.unexpected(&before, slips::before_block);
+    }
+    match parts.next_if(|part| part.as_rule() == Rule::body) {
+        Some(body) => builder.body(body),
+        None => {
+            let place = head.span.after();
+            if known {
+                builder.report(slips::missing_block(word, place));
+            }
+            (empty(Span { end: span.end.max(place.start), ..place }.after()), 0)
+        }
+    }
+}
+
+/// `head { … } else …`
+fn choice<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Span) -> Deep<StatementKind> {
+    let mut parts = parts.peekable();
+    let (condition, depth) = value::expression(builder, parts.next().expect("`if` has a head"));
+    if let Some(then) = parts.next_if(|part| part.as_rule() == Rule::then_word) {
+        builder.report(slips::then_in_statement(builder.span(&then)));
+        let values = parts.filter(|part| part.as_rule() == Rule::expr);
+        values.for_each(|value| drop(value::expression(builder, value)));
+        let then = empty(span.after());
+        return (StatementKind::If { condition, then, otherwise: None }, depth + 1);
+    }
+    let (then, deep) = block(builder, &mut parts, "if", &condition, span);
+    let otherwise = parts.next().map(|pair| otherwise(builder, pair));
+    let deepest = depth.max(deep).max(otherwise.as_ref().map_or(0, |(_, depth)| *depth));
+    let otherwise = otherwise.map(|(body, _)| body);
+    (StatementKind::If { condition, then, otherwise }, deepest + 1)
+}
+
+/// What follows `else`, or the slip `elif`.
+fn otherwise<'t>(builder: &Builder<'t>, pair: Node<'t>) -> Deep<Body> {
+    let mut parts = pair.into_inner();
+    let word = parts.next().expect("the other choice begins with a word");
+    let place = builder.span(&word);
+    if word.as_rule() == Rule::elif {
+        builder.report(slips::else_if(word.as_str(), place));
+        let span = parts.clone().last().map_or(place, |last| place.to(builder.trimmed(&last)));
+        let (kind, depth) = choice(builder, parts, span);
+        return chained(builder, kind, depth, span);
+    }
+    match parts.next() {
+        Some(pair) if pair.as_rule() == Rule::body => builder.body(pair),
+        Some(pair) => {
+            let span = builder.trimmed(&pair);
+            let mut parts = pair.into_inner();
+            parts.next();
+            let (kind, depth) = choice(builder, parts, span);
+            chained(builder, kind, depth, span)
+        }
+        None => {
+            builder.report(slips::missing_else_block(place));
+            (empty(place.after()), 0)
+        }
+    }
+}
+
+/// A body of one `if`.
+fn chained(builder: &Builder, kind: StatementKind, depth: usize, span: Span) -> Deep<Body> {
+    let (entry, depth) = builder.checked(builder.plain(kind, span), depth, span);
+    (Body { entries: vec![entry], span }, depth)
+}
+
+fn assertion<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>) -> Deep<StatementKind> {
+    let (condition, depth) = value::expression(builder, parts.next().expect("`assert` has a condition"));
+    let message = parts.next().map(|pair| {
+        let start = pair.as_span().start();
+        if !builder.before(start).ends_with(',') {
+            builder.report(slips::missing_comma(condition.span.after()));
+        }
+        value::expression(builder, pair)
+    });
+    let deepest = depth.max(message.as_ref().map_or(0, |(_, depth)| *depth));
+    (StatementKind::Assert { condition, message: message.map(|(value, _)| value) }, deepest + 1)
+}
