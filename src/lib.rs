@@ -149,7 +149,7 @@ fn stages(
     let scene = lowered.scene.filter(|_| !diagnostic::any_errors(&diagnostics));
     Compiled {
         scene,
-        inventory: Inventory::of(&things),
+        inventory: Inventory::of(&program, sources, &things),
         origins: things.origins,
         diagnostics,
         notes: lowered.notes,

@@ -35,7 +35,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ("render", &["math", "color", "develop", "scene"]),
     ("output", &["math", "color", "develop", "scene"]),
     ("explain", &["diagnostic"]),
-    ("inventory", &["schema", "eval", "scene"]),
+    ("inventory", &["source", "schema", "check", "eval", "scene"]),
     ("mend", &["span", "diagnostic"]),
     ("report", &["span", "source", "diagnostic", "explain"]),
 ];

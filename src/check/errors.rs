@@ -241,7 +241,10 @@ pub(super) fn cannot_hold_statement(span: Span, outer: &str) -> Diagnostic {
 pub(super) fn named_part(kind: &Path, name: &Name, outer: &str) -> Diagnostic {
     let kind = path_text(kind);
     let message = format!("the `{kind}` of a `{outer}` has no name");
-    Diagnostic::new(Code::E0301, message, name.span).at("a name here").help(format!("write `{kind} {{ … }}`")).fix(name.span, "")
+    Diagnostic::new(Code::E0301, message, name.span)
+        .at("a name here")
+        .help(format!("write `{kind} {{ … }}`"))
+        .fix(name.span, "")
 }
 
 pub(super) fn unknown_field(

@@ -283,7 +283,8 @@ impl Checker<'_> {
             .filter(|(_, place)| place.is_none())
             .map(|(name, _)| name.as_str())
             .collect();
-        let here = familiar::field(&self.kind_name(kind), kind.category(), &name.text).and_then(|here| here.name);
+        let here =
+            familiar::field(&self.kind_name(kind), kind.category(), &name.text).and_then(|here| here.name);
         let here = here.filter(|name| free.contains(name));
         here.or_else(|| errors::closest(&name.text, &free)).and_then(|guess| self.find_field(kind, guess))
     }

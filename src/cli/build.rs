@@ -15,7 +15,6 @@ use rt_lang::lower::Overrides;
 use rt_lang::output::{Depth, Facts, Format, Picture, encode};
 use rt_lang::render::{Cancelled, Control, Rendered, Shown, Tracer, Window};
 use rt_lang::scene::{self, Scene};
-use rt_lang::{Options, compile};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -171,7 +170,7 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
     let facts = facts(scene, &traced);
     context.threads.install(|| write(&traced.picture, &facts, arguments.look.bits, staged))?;
     let findings = findings(scene, &traced);
-    let warnings: Vec<Diagnostic> = findings.iter().map(|finding| compiled.judge(finding)).collect();
+    let warnings: Vec<Diagnostic> = findings.iter().filter_map(|finding| compiled.judge(finding)).collect();
     if !warnings.is_empty() {
         exit = exit.max(messenger.say(&warnings, &loaded.sources)?);
     }
