@@ -3,13 +3,13 @@
 //! A case is named after the code it is about, which is then the only one it gives.
 
 use crate::folder::Folder;
-use rt_lang::compile;
 use rt_lang::diagnostic::{Code, Diagnostic};
-use rt_lang::lower::Overrides;
+use rt_lang::files::NoFiles;
 use rt_lang::mend::mend;
 use rt_lang::report::{self, Style};
 use rt_lang::source::{Source, Sources};
 use rt_lang::span::SourceId;
+use rt_lang::{Options, compile};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
@@ -26,7 +26,7 @@ fn slips_are_reported() {
             let text = std::fs::read_to_string(path).unwrap();
             let mut sources = Sources::default();
             let id = sources.add(Source::new(name, text));
-            let compiled = compile(&sources, id, &Overrides::default(), &Folder::of(path));
+            let compiled = compile(&Folder::of(path), &mut sources, id, &Options::default());
             let codes: BTreeSet<&str> = compiled.diagnostics.iter().map(|d| d.code.as_str()).collect();
             if let Some(code) =
                 name.split('-').next().filter(|word| Code::ALL.iter().any(|c| c.as_str() == *word))
@@ -88,7 +88,7 @@ fn what_is_offered_as_a_mend_mends() {
 fn given(text: &str) -> Vec<Diagnostic> {
     let mut sources = Sources::default();
     let id = sources.add(Source::new("case.rt", text));
-    compile(&sources, id, &Overrides::default()).diagnostics
+    compile(&NoFiles, &mut sources, id, &Options::default()).diagnostics
 }
 
 /// Each code the compiler can give has a case, here or among those of the syntax. E0009 is found before there is

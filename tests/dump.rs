@@ -170,7 +170,8 @@ impl Dump<'_> {
                 self.inside(|dump| dump.expr("", value));
             }
             ExprKind::Call { function, arguments } => {
-                line(format!("call {}", function.text));
+                let names = std::iter::once(&function.first).chain(&function.rest);
+                line(format!("call {}", names.map(|name| name.text.as_str()).collect::<Vec<_>>().join(".")));
                 self.inside(|dump| dump.arguments(arguments));
             }
             ExprKind::List(values) => {
