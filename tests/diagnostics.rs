@@ -88,7 +88,8 @@ fn what_is_offered_as_a_mend_mends() {
 fn given(text: &str) -> Vec<Diagnostic> {
     let mut sources = Sources::default();
     let id = sources.add(Source::new("case.rt", text));
-    compile(&NoFiles, &mut sources, id, &Options::default()).diagnostics
+    let folder = Folder(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/cases/diagnostics").into());
+    compile(&folder, &mut sources, id, &Options::default()).diagnostics
 }
 
 /// Each code the compiler can give has a case, here or among those of the syntax. E0009 is found before there is
