@@ -7,5 +7,9 @@ mod command;
 mod diagnostics;
 mod documents;
 mod dump;
+mod format;
+mod fuzz;
+#[path = "../fuzz/invariants.rs"]
+mod invariants;
 mod parse;
 mod pictures;
