@@ -8,12 +8,13 @@
 //! | [`interrupt`] | Ctrl-C |
 //! | [`terminal`] | the one writer to standard error |
 //! | [`progress`] | how far a picture is |
-//! | [`build`], [`check`], [`develop`] | the commands |
+//! | [`build`], [`check`], [`develop`], [`fmt`] | the commands |
 
 mod args;
 mod build;
 mod check;
 mod develop;
+mod fmt;
 mod input;
 mod interrupt;
 mod progress;
@@ -81,6 +82,7 @@ pub fn main() -> ExitCode {
         Command::Build(build) => build::run(&build, terminal, &interrupt),
         Command::Check(check) => Ok(check::run(&check, terminal)),
         Command::Develop(develop) => develop::run(&develop, &interrupt),
+        Command::Fmt(fmt) => fmt::run(&fmt, terminal, &interrupt),
     };
     let exit = ended.unwrap_or_else(|problem| {
         terminal.problem(&problem);
