@@ -8,6 +8,10 @@ mod diagnostics;
 mod documents;
 mod folder;
 mod dump;
+mod format;
+mod fuzz;
+#[path = "../fuzz/invariants.rs"]
+mod invariants;
 mod parse;
 mod pictures;
 mod scenes;
