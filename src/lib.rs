@@ -12,7 +12,7 @@
 //! |---|---|---|
 //! | [`span`], [`source`], [`diagnostic`] | places, texts, what is said of them | terminals |
 //! | [`files`] | what a scene may read | the disk |
-//! | [`asset`] | the bytes of pictures to values | where the bytes came from |
+//! | [`asset`] | the bytes of pictures and meshes to values | where the bytes came from |
 //! | [`math`], [`color`], [`units`], [`develop`] | arithmetic with the same bits everywhere | the language |
 //! | [`schema`] | the one table of kinds and fields | how they are checked or drawn |
 //! | [`syntax`] | text to tree; never fails | names, types, the scene |

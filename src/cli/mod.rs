@@ -97,8 +97,6 @@ pub fn main() -> ExitCode {
         Command::Init(init) => init::run(&init),
         Command::Completions(completions) => manual::completions(&completions),
         Command::Man(man) => manual::man(&man),
-        Command::Check(check) => Ok(check::run(&check, terminal)),
-        Command::Develop(develop) => develop::run(&develop, &interrupt),
         Command::Fmt(fmt) => fmt::run(&fmt, terminal, &interrupt),
     };
     let exit = ended.unwrap_or_else(|problem| {

@@ -49,11 +49,10 @@ impl<'f> Meshes<'f> {
         let unit = DVec3::splat(things.read(made, mesh::UNIT));
         let placed = placed(thing.world_from_object * DAffine3::from_scale(unit), made.span)?;
         let smooth = things.read(made, mesh::SMOOTH);
-        let shape = Shape::Mesh(Box::new(Instance { mesh: triangles, placed, smooth }));
-        // Triangles have areas in the file; in the world they may be too small or too large for numbers.
-        match (shape.area().is_normal(), shape.bounds()) {
-            (true, Some(bounds)) if bounds.size().is_finite() => Ok(shape),
-            _ => Err(Box::new(errors::flattened(made.span))),
+        let shape = Shape::Mesh(Box::new(Instance::new(triangles, placed, smooth)));
+        match shape.bounds().is_some_and(|bounds| bounds.size().is_finite()) {
+            true => Ok(shape),
+            false => Err(Box::new(errors::too_large(made.span))),
         }
     }
 
