@@ -67,10 +67,40 @@ pub struct Compiled {
     pub diagnostics: Vec<Diagnostic>,
     /// One line for each default that was chosen for the user.
     pub notes: Vec<String>,
+    /// What can be set by `name=value`, in the order written.
+    pub params: Vec<ParamFacts>,
     /// The source that was compiled.
     main: SourceId,
     /// Where the source says how noisy the picture may be.
     noise: Option<Span>,
+}
+
+/// A setting of a scene, as it is written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ParamFacts {
+    /// What it is called.
+    pub name: String,
+    /// Its type, such as `length` or `[color]`.
+    pub ty: String,
+    /// What it is where it is not set.
+    pub default: String,
+    /// Both ends of what it must lie in.
+    pub range: Option<[String; 2]>,
+    /// The words above it.
+    pub doc: Option<String>,
+}
+
+impl ParamFacts {
+    fn of(param: &check::Param, sources: &Sources) -> ParamFacts {
+        let text = |expr: &check::Expr| sources.text(expr.span).to_string();
+        ParamFacts {
+            name: param.name.to_string(),
+            ty: param.declared.written(),
+            default: param.written.clone(),
+            range: param.range.as_ref().map(|[low, high]| [text(low), text(high)]),
+            doc: param.doc.as_ref().map(|doc| doc.to_string()),
+        }
+    }
 }
 
 /// What a compilation may be told from outside.
@@ -137,7 +167,9 @@ fn stages(
     });
     let scene = lowered.scene.filter(|_| !diagnostic::any_errors(&diagnostics));
     let (notes, noise) = (lowered.notes, lowered.noise);
-    Compiled { scene, origins: things.origins, diagnostics, notes, main, noise }
+    let params = program.main().map_or(&[][..], |part| &part.params);
+    let params = params.iter().map(|param| ParamFacts::of(param, sources)).collect();
+    Compiled { scene, origins: things.origins, diagnostics, notes, params, main, noise }
 }
 
 impl Compiled {
