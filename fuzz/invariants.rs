@@ -2,13 +2,14 @@
 //! found, and the tests of the formatter on generated ones.
 
 use crate::dump;
-use rt_lang::compile as compile_scene;
 use rt_lang::diagnostic::Diagnostic;
-use rt_lang::lower::Overrides;
+use rt_lang::eval::Limits;
+use rt_lang::files::NoFiles;
 use rt_lang::source::{Source, Sources};
 use rt_lang::span::SourceId;
 use rt_lang::syntax::ast::File;
 use rt_lang::syntax::{self, parse_expression};
+use rt_lang::{Options, compile as compile_scene};
 
 const SOURCE: SourceId = SourceId(0);
 
@@ -39,7 +40,10 @@ pub fn fmt(text: &str) {
 pub fn compile(text: &str) {
     let mut sources = Sources::default();
     let id = sources.add(Source::new("fuzz.rt", text));
-    let compiled = compile_scene(&sources, id, &Overrides::default());
+    // Within what a fuzzer can wait for.
+    let limits = Limits { things: 10_000, levels: 16, items: 10_000, steps: 100_000 };
+    let options = Options { limits, ..Options::default() };
+    let compiled = compile_scene(&NoFiles, &mut sources, id, &options);
     assert!(compiled.scene.is_some() || !compiled.diagnostics.is_empty());
     dump::diagnostics(text, &compiled.diagnostics);
 }

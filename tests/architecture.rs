@@ -32,7 +32,7 @@ const EDGES: &[(&str, &[&str])] = &[
         "lower",
         &["span", "source", "diagnostic", "files", "math", "color", "schema", "eval", "asset", "scene"],
     ),
-    ("render", &["math", "color", "develop", "scene"]),
+    ("render", &["math", "color", "develop", "asset", "scene"]),
     ("output", &["math", "color", "develop", "scene"]),
     ("explain", &["diagnostic"]),
     ("inventory", &["source", "schema", "check", "eval", "scene"]),

@@ -1,10 +1,10 @@
 //! Every slip, and what is said of it: `cases/diagnostics/*.rt`, with what a terminal shows beside them.
 //!
-//! A case is named after the code it is about, which is then the only one it gives.
+//! A case is named after the code it is about, which is then the only one it gives. One of several files is a folder
+//! with a `main.rt`. A first line `// set: name=value` is given as by `--set`.
 
 use crate::folder::Folder;
 use rt_lang::diagnostic::{Code, Diagnostic};
-use rt_lang::files::NoFiles;
 use rt_lang::mend::mend;
 use rt_lang::report::{self, Style};
 use rt_lang::source::{Source, Sources};
@@ -12,6 +12,7 @@ use rt_lang::span::SourceId;
 use rt_lang::{Options, compile};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
+use std::path::Path;
 
 #[test]
 fn slips_are_reported() {
@@ -21,12 +22,16 @@ fn slips_are_reported() {
     settings.set_snapshot_path("cases/diagnostics");
     let wrong = RefCell::new(vec![]);
     settings.bind(|| {
-        insta::glob!("cases/diagnostics/*.rt", |path| {
-            let name = path.file_name().unwrap().to_str().unwrap();
+        let case = |path: &Path| {
+            let named = if path.ends_with("main.rt") { path.parent().unwrap() } else { path };
+            let name = named.file_name().unwrap().to_str().unwrap();
             let text = std::fs::read_to_string(path).unwrap();
             let mut sources = Sources::default();
-            let id = sources.add(Source::new(name, text));
-            let compiled = compile(&Folder::of(path), &mut sources, id, &Options::default());
+            let set = text.lines().next().and_then(|line| line.strip_prefix("// set: "));
+            let set = set.map(|set| vec![set.to_string()]).unwrap_or_default();
+            let id = sources.add(Source::new(path.file_name().unwrap().to_str().unwrap(), text));
+            let options = Options { set, ..Options::default() };
+            let compiled = compile(&Folder::of(path), &mut sources, id, &options);
             let codes: BTreeSet<&str> = compiled.diagnostics.iter().map(|d| d.code.as_str()).collect();
             if let Some(code) =
                 name.split('-').next().filter(|word| Code::ALL.iter().any(|c| c.as_str() == *word))
@@ -44,7 +49,9 @@ fn slips_are_reported() {
                 shown.push_str(&format!("note: {note}\n"));
             }
             insta::assert_snapshot!("report", shown);
-        });
+        };
+        insta::glob!("cases/diagnostics/*.rt", case);
+        insta::glob!("cases/diagnostics/*/main.rt", case);
     });
     assert!(wrong.borrow().is_empty(), "other codes than the name says:\n{}", wrong.borrow().join("\n"));
 }

@@ -7,6 +7,7 @@ mod command;
 mod diagnostics;
 mod documents;
 mod folder;
+mod language;
 mod dump;
 mod format;
 mod fuzz;

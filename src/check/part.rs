@@ -11,6 +11,9 @@ use crate::schema::PLACED;
 use crate::syntax::ast::StatementKind as TreeStatement;
 use crate::syntax::ast::{self, BinaryOp, Entry, ExprKind as Tree, Name, Parameter, TypeName};
 
+/// What a call, or a use of a part, counts by itself, in expressions: about as long as it takes.
+const CALL: u64 = 9;
+
 impl<'a> Checker<'a> {
     /// A whole file as a part.
     pub(super) fn file(&mut self, tree: &ast::File, main: bool) -> PartId {
@@ -73,7 +76,7 @@ impl<'a> Checker<'a> {
         let found = std::mem::replace(&mut self.params, params);
         // One that is not there had an error, such as a name twice.
         let params = found.into_iter().filter_map(|(_, param)| param).collect();
-        let cost = self.nodes - before + 1;
+        let cost = self.nodes - before + CALL;
         self.program.parts.push(Part { name: name.into(), params, block, fields, slots, inside, cost, doc });
         PartId(self.program.parts.len() as u32 - 1)
     }
@@ -249,7 +252,7 @@ impl<'a> Checker<'a> {
             result,
             value,
             slots,
-            cost: self.nodes - before + 1,
+            cost: self.nodes - before + CALL,
             doc: statement.doc.clone(),
         });
         let id = FunctionId(self.program.functions.len() as u32 - 1);

@@ -137,7 +137,7 @@ impl<'p> Evaluator<'p> {
         span: Span,
     ) -> Option<(Rc<Made>, Inside, super::built::Shift)> {
         let (outer, outer_link) = (self.group, self.link);
-        if !self.enter(make.written.span) {
+        if !self.count_things(1, span) || !self.enter(make.written.span) {
             return None;
         }
         let mut link = self.out().link(span, outer_link);
@@ -173,12 +173,11 @@ impl<'p> Evaluator<'p> {
 
     /// Copies what a group holds into the innermost buffer, where it becomes its newest group.
     fn append(&mut self, held: &Group, parent: u32, link: u32, span: Span) -> super::built::Shift {
-        if !self.count_things(held.built.things.len(), span)
-            || !self.step(held.built.things.len() as u64, span)
-        {
-            let shift = super::built::Shift::default();
+        // Groups count as well: those of nothing multiply like others.
+        let count = held.built.things.len() + held.built.groups.len();
+        if !self.count_things(count, span) || !self.step(count as u64, span) {
             self.out().begin_group(parent);
-            return shift;
+            return super::built::Shift::default();
         }
         let levels = [held.level, self.buffers.len() - 1];
         self.out().append(&held.built, parent, link, levels)

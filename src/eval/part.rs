@@ -128,7 +128,7 @@ impl<'p> Evaluator<'p> {
         named: bool,
     ) -> Option<(Rc<Made>, Inside, Shift)> {
         let span = written.span;
-        if !self.enter(span) {
+        if !self.count_things(1, span) || !self.enter(span) {
             return None;
         }
         let part = self.program.part(value.part);
