@@ -18,6 +18,14 @@ pub fn display(radiance: Rgb, stops: f64, tonemap: Tonemap) -> Rgb {
     Rgb::new(encode_srgb(linear.x), encode_srgb(linear.y), encode_srgb(linear.z))
 }
 
+/// Whether a radiance is burnt out: above white in every channel, and shown as white or as good as. A single channel
+/// at its end is a bright colour, no loss.
+pub fn is_burnt_out(radiance: Rgb, stops: f64, tonemap: Tonemap) -> bool {
+    const AS_GOOD_AS_WHITE: f64 = 250.0 / 255.0;
+    let exposed = radiance.min_element() * exp2(stops);
+    exposed > 1.0 && display(radiance, stops, tonemap).min_element() >= AS_GOOD_AS_WHITE
+}
+
 /// Khronos PBR Neutral (Khronos Group, "PBR Neutral Tone Mapper specification", 2024).
 fn neutral(color: Rgb) -> Rgb {
     const FRESNEL: f64 = 0.04;
@@ -84,6 +92,16 @@ mod tests {
             assert!(display(Rgb::ZERO, 3.0, curve).max_element() < 1e-2);
             let color = Rgb::new(0.05, 0.1, 0.2);
             assert_eq!(display(color, 1.0, curve), display(2.0 * color, 0.0, curve));
+        }
+    }
+
+    #[test]
+    fn white_is_not_burnt_out_and_what_is_above_it_is() {
+        for curve in CURVES {
+            assert!(!is_burnt_out(Rgb::ONE, 0.0, curve));
+            assert!(!is_burnt_out(Rgb::new(100.0, 0.5, 0.5), 0.0, Tonemap::None));
+            assert!(is_burnt_out(Rgb::splat(100.0), 0.0, curve), "{curve:?}");
+            assert!(is_burnt_out(Rgb::ONE, 7.0, curve), "{curve:?}");
         }
     }
 

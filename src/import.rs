@@ -104,7 +104,7 @@ impl Importer<'_> {
             return self.report(errors::file(written, &FileError::TooLarge(MAX_SOURCE)));
         }
         let Ok(text) = std::str::from_utf8(&bytes) else { return self.report(errors::not_text(written)) };
-        let source = self.sources.add(Source::new(path.as_str(), text).at(path.clone()));
+        let source = self.sources.add(Source::new(self.files.name(path), text).at(path.clone()));
         Some(self.file(source, path.clone()))
     }
 

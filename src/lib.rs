@@ -23,7 +23,10 @@
 //! | [`scene`] | the picture in its simplest form | where it came from |
 //! | [`render`] | scene to film; cannot fail | places, files, syntax |
 //! | [`output`] | film to the bytes of image files, and back | files |
-//! | [`report`] | diagnostics to text for a person | what they are about |
+//! | [`explain`] | the page on each diagnostic | how it is shown |
+//! | [`inventory`] | what stands in a picture, counted | how it is shown |
+//! | [`mend`] | applying the edits that diagnostics offer | files |
+//! | [`report`] | diagnostics to text, for a person or a program | what they are about |
 
 pub mod asset;
 mod allow;
@@ -32,10 +35,13 @@ pub mod color;
 pub mod develop;
 pub mod diagnostic;
 pub mod eval;
+pub mod explain;
 pub mod files;
 pub mod import;
+pub mod inventory;
 pub mod lower;
 pub mod math;
+pub mod mend;
 pub mod output;
 pub mod render;
 pub mod report;
@@ -48,10 +54,11 @@ pub mod units;
 
 use check::Setting;
 use diagnostic::{Code, Diagnostic};
-use eval::{Limits, Origins};
+use eval::{Limits, Origins, Thing, Things};
 use files::Files;
 use import::Imported;
-use lower::Overrides;
+use inventory::Inventory;
+use lower::{Meshes, Overrides, Places};
 use scene::Scene;
 use source::Sources;
 use span::{SourceId, Span};
@@ -67,40 +74,14 @@ pub struct Compiled {
     pub diagnostics: Vec<Diagnostic>,
     /// One line for each default that was chosen for the user.
     pub notes: Vec<String>,
-    /// What can be set by `name=value`, in the order written.
-    pub params: Vec<ParamFacts>,
+    /// What stands in the picture.
+    pub inventory: Inventory,
+    /// Where settings stand that only a finished picture can judge.
+    places: Places,
     /// The source that was compiled.
     main: SourceId,
-    /// Where the source says how noisy the picture may be.
-    noise: Option<Span>,
-}
-
-/// A setting of a scene, as it is written.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ParamFacts {
-    /// What it is called.
-    pub name: String,
-    /// Its type, such as `length` or `[color]`.
-    pub ty: String,
-    /// What it is where it is not set.
-    pub default: String,
-    /// Both ends of what it must lie in.
-    pub range: Option<[String; 2]>,
-    /// The words above it.
-    pub doc: Option<String>,
-}
-
-impl ParamFacts {
-    fn of(param: &check::Param, sources: &Sources) -> ParamFacts {
-        let text = |expr: &check::Expr| sources.text(expr.span).to_string();
-        ParamFacts {
-            name: param.name.to_string(),
-            ty: param.declared.written(),
-            default: param.written.clone(),
-            range: param.range.as_ref().map(|[low, high]| [text(low), text(high)]),
-            doc: param.doc.as_ref().map(|doc| doc.to_string()),
-        }
-    }
+    /// What the source says is expected.
+    allows: Vec<check::Allow>,
 }
 
 /// What a compilation may be told from outside.
@@ -151,9 +132,11 @@ fn stages(
         // What could not be understood may use any name.
         diagnostics.retain(|diagnostic| diagnostic.code != Code::W0106);
     }
-    let (things, found) = eval::eval(&program, options.limits, lower::measure);
+    let meshes = Meshes::new(files, sources);
+    let measure = |things: &Things, thing: &Thing| lower::measure(things, thing, &meshes);
+    let (things, found) = eval::eval(&program, options.limits, &measure);
     diagnostics.extend(found);
-    let lowered = lower::lower(&things, &options.overrides, files, sources);
+    let lowered = lower::lower(&things, &options.overrides, files, sources, &meshes);
     diagnostics.extend(lowered.diagnostics);
     if !diagnostic::any_errors(&diagnostics) {
         diagnostics.extend(lower::nothing_to_see(&things, main));
@@ -166,20 +149,101 @@ fn stages(
         (again.code, &again.primary, &again.message) == (first.code, &first.primary, &first.message)
     });
     let scene = lowered.scene.filter(|_| !diagnostic::any_errors(&diagnostics));
-    let (notes, noise) = (lowered.notes, lowered.noise);
-    let params = program.main().map_or(&[][..], |part| &part.params);
-    let params = params.iter().map(|param| ParamFacts::of(param, sources)).collect();
-    Compiled { scene, origins: things.origins, diagnostics, notes, params, main, noise }
+    Compiled {
+        scene,
+        inventory: Inventory::of(&program, sources, &things),
+        origins: things.origins,
+        diagnostics,
+        notes: lowered.notes,
+        main,
+        allows: program.allows,
+        places: lowered.places,
+    }
 }
 
 impl Compiled {
-    /// The warning of a render that ended noisier than the source asks for: `noise`, as a share of white, after
-    /// so many samples a pixel.
-    pub fn noise_not_reached(&self, noise: f64, samples: u32) -> Diagnostic {
-        let place = self.noise.unwrap_or(Span::new(self.main, 0, 0));
-        let message = format!("the noise is still {:.2}% after {samples} samples a pixel", 100.0 * noise);
-        Diagnostic::new(Code::W0701, message, place)
-            .at("not reached")
-            .help("give larger lights, which are found more easily, or allow more noise")
+    /// What there is to say of a source that is not worth compiling.
+    pub fn refused(diagnostic: Diagnostic) -> Compiled {
+        Compiled {
+            scene: None,
+            origins: Origins::default(),
+            inventory: Inventory::default(),
+            notes: vec![],
+            main: diagnostic.primary.span.source,
+            diagnostics: vec![diagnostic],
+            allows: vec![],
+            places: Places::default(),
+        }
     }
+
+    /// What a finished picture gives cause to say, unless the source allows it.
+    pub fn judge(&self, finding: &Finding) -> Option<Diagnostic> {
+        let mut said = vec![self.warning(finding)];
+        allow::allow(&self.allows, &mut said);
+        said.pop()
+    }
+
+    fn warning(&self, finding: &Finding) -> Diagnostic {
+        let start = Span::new(self.main, 0, 0);
+        match *finding {
+            Finding::Noisy { noise, samples } => {
+                let place = self.places.noise.unwrap_or(start);
+                let message =
+                    format!("the noise is still {:.2}% after {samples} samples a pixel", 100.0 * noise);
+                Diagnostic::new(Code::W0701, message, place)
+                    .at("not reached")
+                    .help("give larger lights, which are found more easily, or allow more noise")
+            }
+            Finding::Cut { share, bounces } => {
+                let message = format!(
+                    "about {:.0}% of the light is lost, since paths end after {bounces} bounces",
+                    100.0 * share
+                );
+                let help =
+                    format!("raise it: `render {{ bounces: {} }}`; or use darker colours", 4 * bounces);
+                Diagnostic::new(Code::W0702, message, self.places.bounces.unwrap_or(start))
+                    .at("too few")
+                    .help(help)
+            }
+            Finding::BurntOut { share, stops, fitting } => {
+                let message =
+                    format!("{:.0}% of the picture is burnt out to white at exposure {stops}", 100.0 * share);
+                let help = match self.places.exposure {
+                    Some(_) => format!("write `exposure: {fitting}`, which would fit, or `auto`"),
+                    None => format!("`--exposure {fitting}` would fit, or `auto`"),
+                };
+                Diagnostic::new(Code::W0703, message, self.places.exposure.unwrap_or(start))
+                    .at("too much")
+                    .help(help)
+            }
+        }
+    }
+}
+
+/// Something about a finished picture that is probably not meant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Finding {
+    /// It ended noisier than the source asks for.
+    Noisy {
+        /// As a share of white.
+        noise: f64,
+        /// Samples a pixel.
+        samples: u32,
+    },
+    /// The limit of bounces ended paths that still carried light.
+    Cut {
+        /// About the share of the light that is lost.
+        share: f64,
+        /// The limit.
+        bounces: u32,
+    },
+    /// Much of it is white, and was not before it was exposed.
+    BurntOut {
+        /// The share of its pixels.
+        share: f64,
+        /// The exposure that was given.
+        stops: f64,
+        /// The one that would fit.
+        fitting: f64,
+    },
 }

@@ -1,16 +1,21 @@
-//! Diagnostics to text for a person, through miette, which nothing else uses.
+//! Diagnostics to text: for a person, through miette, which nothing else uses; and for programs, as JSON, SARIF and
+//! GitHub's workflow commands.
 //!
 //! Sources may come from anywhere: a line is shown only around the place that is meant, however long it is,
 //! control characters are shown as `�` so that no text can steer the terminal, and only so many diagnostics
 //! are shown that the first of them is not swept away.
 
 mod excerpt;
+mod machine;
+mod sarif;
 
 use crate::diagnostic::{Diagnostic, Label, Severity};
 use crate::source::Sources;
 use crate::span::Span;
 use excerpt::Excerpt;
+pub use machine::{SCHEMA, github, json, short};
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, ThemeCharacters, ThemeStyles};
+pub use sarif::Sarif;
 use std::fmt;
 
 /// The most diagnostics that [`all`] shows.
@@ -31,6 +36,9 @@ pub struct Style {
 /// line with their count. Empty where there are none.
 pub fn all(diagnostics: &[Diagnostic], sources: &Sources, style: Style) -> String {
     let mut shown: Vec<&Diagnostic> = diagnostics.iter().collect();
+    shown.sort_by_key(|diagnostic| place(diagnostic));
+    let repeated = drop_repeated(&mut shown);
+    let worth = shown.len();
     shown.sort_by_key(|diagnostic| (diagnostic.severity(), place(diagnostic)));
     shown.truncate(MOST_SHOWN);
     shown.sort_by_key(|diagnostic| place(diagnostic));
@@ -39,14 +47,42 @@ pub fn all(diagnostics: &[Diagnostic], sources: &Sources, style: Style) -> Strin
         text.push_str(&human(diagnostic, sources, style));
         text.push('\n');
     }
-    if shown.len() < diagnostics.len() {
-        text.push_str(&format!("… and {} more\n", diagnostics.len() - shown.len()));
+    for (diagnostic, count) in repeated {
+        let at = at(diagnostic.primary.span, sources);
+        text.push_str(&format!("… {count} more of {} at {at}\n", diagnostic.code.as_str()));
+    }
+    if shown.len() < worth {
+        text.push_str(&format!("… and {} more\n", worth - shown.len()));
     }
     if let Some(first) = shown.first() {
         let name = printable(&sources.get(first.primary.span.source).name);
         text.push_str(&format!("{} in {name}\n", count(diagnostics)));
     }
     text
+}
+
+/// How often one code is shown at one place: a slip in a loop has another value each turn.
+const MOST_ALIKE: usize = 3;
+
+/// Leaves the first few of those that share code and place, and gives one of each of the others with their count.
+/// They come in the order of their places.
+fn drop_repeated<'d>(shown: &mut Vec<&'d Diagnostic>) -> Vec<(&'d Diagnostic, usize)> {
+    let mut dropped: Vec<(&Diagnostic, usize)> = vec![];
+    let mut last = None;
+    let mut alike = 0;
+    shown.retain(|diagnostic| {
+        let here = Some(place(diagnostic));
+        alike = if here == last { alike + 1 } else { 1 };
+        last = here;
+        if alike > MOST_ALIKE {
+            match dropped.last_mut() {
+                Some((_, count)) if alike > MOST_ALIKE + 1 => *count += 1,
+                _ => dropped.push((diagnostic, 1)),
+            }
+        }
+        alike <= MOST_ALIKE
+    });
+    dropped
 }
 
 /// One diagnostic: code and message, the place with its labels, the help, and the uses that led there.
@@ -80,10 +116,34 @@ pub fn human(diagnostic: &Diagnostic, sources: &Sources, style: Style) -> String
     for label in elsewhere {
         text.push_str(&format!("  {}: {}\n", sentence(&label.text), at(label.span, sources)));
     }
-    for &span in &diagnostic.uses {
-        text.push_str(&format!("  in `{}`, {}\n", head(sources.text(span)), at(span, sources)));
-    }
+    text.push_str(&uses(&diagnostic.uses, sources));
     text
+}
+
+/// The most lines that a chain of uses takes; of a longer one, its ends are shown.
+const MOST_USES: usize = 8;
+
+/// The chain of uses, outermost first. The turns of one loop are one line.
+fn uses(chain: &[Span], sources: &Sources) -> String {
+    let mut runs: Vec<(Span, usize)> = vec![];
+    for &span in chain {
+        match runs.last_mut() {
+            Some((last, count)) if *last == span => *count += 1,
+            _ => runs.push((span, 1)),
+        }
+    }
+    let line = |(span, count): &(Span, usize)| {
+        let times = if *count > 1 { format!(", {count} levels") } else { String::new() };
+        format!("  in `{}`, {}{times}\n", head(sources.text(*span)), at(*span, sources))
+    };
+    if runs.len() <= MOST_USES {
+        return runs.iter().map(line).collect();
+    }
+    let ends = (MOST_USES - 1) / 2;
+    let (first, rest) = runs.split_at(MOST_USES - 1 - ends);
+    let (middle, last) = rest.split_at(rest.len() - ends);
+    let between = format!("  … {} more levels\n", middle.iter().map(|(_, count)| count).sum::<usize>());
+    first.iter().map(line).chain([between]).chain(last.iter().map(line)).collect()
 }
 
 fn handler(diagnostic: &Diagnostic, style: Style) -> GraphicalReportHandler {
@@ -123,12 +183,16 @@ fn at(span: Span, sources: &Sources) -> String {
 /// The head of a statement, enough to know it by: up to its `{` or the end of the line.
 fn head(text: &str) -> String {
     const MOST: usize = 40;
-    let end = text.find(['{', '\n', '\r']).unwrap_or(text.len());
-    let text = text[..end].trim();
+    let text = first_line(text);
+    let text = text[..text.find('{').unwrap_or(text.len())].trim();
     match text.char_indices().nth(MOST) {
         Some((cut, _)) => printable(&text[..cut]) + "…",
         None => printable(text),
     }
+}
+
+fn first_line(text: &str) -> &str {
+    text[..text.find(['\n', '\r']).unwrap_or(text.len())].trim()
 }
 
 /// A sentence about a source, [`printable`], with what is too long to be read in it cut in its middle: it may

@@ -3,6 +3,7 @@
 //! Checking, lowering, messages and the reference page all read it, and no field is named anywhere else: the
 //! `kinds!` table also yields a module a kind (`sphere::RADIUS`, …) with a typed key a field.
 
+pub mod familiar;
 pub mod textures;
 mod types;
 
@@ -17,6 +18,9 @@ const NOT_NEGATIVE: Range = Range { low: 0.0, high: f64::INFINITY, above: false 
 
 /// Of an angle of view: up to 179°.
 const VIEW: Range = Range { low: 0.0, high: 179.0 / 180.0 * std::f64::consts::PI, above: true };
+
+/// Of a spot's cone: up to all directions.
+const CONE_ANGLE: Range = Range { low: 0.0, high: 2.0 * std::f64::consts::PI, above: true };
 
 /// Of a reflectance: a surface that gives back more than it receives is refused.
 const REFLECTANCE: Range = within(0.0, 1.0);
@@ -120,6 +124,8 @@ types! {
     CameraName = FieldType::Named("camera");
     /// A reconstruction filter.
     FilterWord = FieldType::Choice(Filter::WORDS);
+    /// What is behind everything.
+    BackgroundWord = FieldType::Choice(Background::WORDS);
     /// A tone curve.
     TonemapWord = FieldType::Choice(Tonemap::WORDS);
 }
@@ -162,6 +168,16 @@ choice! {
         Gaussian "gaussian",
         /// Mitchell and Netravali's cubic with B = C = 1/3, to 2 pixels: crisp, slightly negative at its edge.
         Mitchell "mitchell",
+    }
+}
+
+choice! {
+    /// What is seen where nothing stands.
+    Background {
+        /// The sky and the suns.
+        Sky "sky",
+        /// Nothing: there the picture is transparent, unless seen in a mirror or through glass. The sky still lights.
+        Transparent "transparent",
     }
 }
 
@@ -334,6 +350,18 @@ kinds! {
         SIZE "size": Point = Required, POSITIVE;
     }
 
+    /// Triangles from a PLY or OBJ file. A mesh is closed, and may be of glass, if each edge is shared by two triangles
+    /// that are oriented alike; else it is an open surface.
+    Shape mesh "mesh" {
+        /// Path of the file, as seen from the folder of this one.
+        FILE "file": Text = Required, ANY;
+        /// What a length of 1 in the file is.
+        UNIT "unit": Length = Value("1m"), POSITIVE;
+        /// Whether it is shaded as if it were round: by the file's normals, or else by means of those of neighbouring
+        /// triangles.
+        SMOOTH "smooth": Bool = Value("true"), ANY;
+    }
+
     /// An endless plane through its origin. The solid half-space lies behind the normal.
     Shape plane "plane" {
         /// Out of the ground. Need not be of length 1.
@@ -396,16 +424,27 @@ kinds! {
         RADIANCE "radiance": Radiance = Absent("from `power`"), NOT_NEGATIVE;
     }
 
-    /// A lamp: a point, or a glowing sphere that is seen.
-    Light light "light" {
+    /// A lamp: a point, a glowing sphere that is seen, or a spot: a point that shines into a cone.
+    Light light "light" rules [
+        Rule::Excludes("cone", &["radius"]),
+        Rule::Together(&["aim", "cone"]),
+        Rule::Needs("soft", "cone")
+    ] {
         /// Its centre.
         AT "at": Point = Value("0"), ANY;
-        /// Radiated in all directions together; each channel is power × color.
+        /// Radiated in all directions together, by a spot what leaves the cone; each channel is power × color.
         POWER "power": Power = Required, NOT_NEGATIVE;
         /// Multiplies the power.
         COLOR "color": Color = Value("white"), NOT_NEGATIVE;
         /// 0 is a point, which casts hard shadows and is not seen; else a glowing sphere.
         RADIUS "radius": Length = Value("0"), NOT_NEGATIVE;
+        /// What a spot shines at: a point or a thing's middle.
+        AIM "aim": Aim = Absent("not a spot: it shines in all directions"), ANY;
+        /// A spot's full angle.
+        CONE "cone": Angle = Absent("see `aim`"), CONE_ANGLE;
+        /// The share of a spot's cone, from its edge inwards, over which the light fades: 0 is a sharp edge, 1 fades
+        /// from the axis on.
+        SOFT "soft": Number = Value("0"), within(0.0, 1.0);
     }
 
     /// A distant disc of light.
@@ -434,7 +473,7 @@ kinds! {
     }
 
     /// Where the picture is taken from.
-    Block camera "camera" {
+    Block camera "camera" rules [Rule::Excludes("width", &["fov", "lens"])] {
         /// The centre of the lens.
         FROM "from": Point = Absent("a three-quarter view that frames every bounded thing"), ANY;
         /// What stands in the middle of the picture.
@@ -443,6 +482,9 @@ kinds! {
         UP "up": Vector = Value("(0, 1, 0)"), ANY;
         /// Angle of view across the width.
         FOV "fov": Angle = Absent("40deg, or what the lens gives"), VIEW;
+        /// Makes the camera orthographic: all rays are parallel, and the picture shows this width of the scene,
+        /// from the plane through `from` on.
+        WIDTH "width": Length = Absent("a camera with perspective"), POSITIVE;
         /// In stops: 0 shows radiance 1 as white, 1 is twice as bright.
         EXPOSURE "exposure": Exposure = Value("auto"), within(-100.0, 100.0);
         /// Depth of field.
@@ -490,6 +532,8 @@ kinds! {
         TONEMAP "tonemap": TonemapWord = Value("neutral"), ANY;
         /// How a pixel weighs the light around it.
         FILTER "filter": FilterWord = Value("gaussian"), ANY;
+        /// What is seen where nothing stands.
+        BACKGROUND "background": BackgroundWord = Value("sky"), ANY;
     }
 }
 

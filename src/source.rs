@@ -62,6 +62,11 @@ impl Sources {
         SourceId(self.all.len() as u32 - 1)
     }
 
+    /// Says where a source lies below the root folder.
+    pub fn place(&mut self, id: SourceId, path: FilePath) {
+        self.all[id.0 as usize].path = path;
+    }
+
     /// The source with this id, which came from [`Sources::add`] of this table.
     pub fn get(&self, id: SourceId) -> &Source {
         &self.all[id.0 as usize]

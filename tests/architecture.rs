@@ -34,7 +34,10 @@ const EDGES: &[(&str, &[&str])] = &[
     ),
     ("render", &["math", "color", "develop", "asset", "scene"]),
     ("output", &["math", "color", "develop", "scene"]),
-    ("report", &["span", "source", "diagnostic"]),
+    ("explain", &["diagnostic"]),
+    ("inventory", &["source", "schema", "check", "eval", "scene"]),
+    ("mend", &["span", "diagnostic"]),
+    ("report", &["span", "source", "diagnostic", "explain"]),
 ];
 
 #[test]

@@ -4,9 +4,12 @@
 //! with a `main.rt`. A first line `// set: name=value` is given as by `--set`.
 
 use crate::folder::Folder;
-use rt_lang::diagnostic::Code;
+use rt_lang::diagnostic::{Code, Diagnostic};
+use rt_lang::files::FilePath;
+use rt_lang::mend::mend;
 use rt_lang::report::{self, Style};
 use rt_lang::source::{Source, Sources};
+use rt_lang::span::SourceId;
 use rt_lang::{Options, compile};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -27,9 +30,13 @@ fn slips_are_reported() {
             let mut sources = Sources::default();
             let set = text.lines().next().and_then(|line| line.strip_prefix("// set: "));
             let set = set.map(|set| vec![set.to_string()]).unwrap_or_default();
-            let id = sources.add(Source::new(path.file_name().unwrap().to_str().unwrap(), text));
+            let source = Source::new(path.file_name().unwrap().to_str().unwrap(), text);
+            // Cases share files with others: the root is the folder of all of them.
+            let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases");
+            let below = path.strip_prefix(root.canonicalize().unwrap()).or(path.strip_prefix(&root)).unwrap();
+            let id = sources.add(source.at(FilePath::root("").join(below.to_str().unwrap()).unwrap()));
             let options = Options { set, ..Options::default() };
-            let compiled = compile(&Folder::of(path), &mut sources, id, &options);
+            let compiled = compile(&Folder(root), &mut sources, id, &options);
             let codes: BTreeSet<&str> = compiled.diagnostics.iter().map(|d| d.code.as_str()).collect();
             if let Some(code) =
                 name.split('-').next().filter(|word| Code::ALL.iter().any(|c| c.as_str() == *word))
@@ -54,8 +61,51 @@ fn slips_are_reported() {
     assert!(wrong.borrow().is_empty(), "other codes than the name says:\n{}", wrong.borrow().join("\n"));
 }
 
+/// Every edit that a message offers mends it: made, and made again on what that leaves, no message with an edit and
+/// none of the codes that had one is left.
+#[test]
+fn what_is_offered_as_a_mend_mends() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases");
+    let mut wrong = vec![];
+    let mut mended = 0;
+    for folder in ["diagnostics", "syntax"] {
+        for entry in std::fs::read_dir(root.join(folder)).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_none_or(|extension| extension != "rt") {
+                continue;
+            }
+            let mut text = std::fs::read_to_string(&path).unwrap();
+            let mut slips: BTreeSet<&str> = BTreeSet::new();
+            for _ in 0..10 {
+                let diagnostics = given(&text);
+                let offered = diagnostics.iter().filter(|diagnostic| diagnostic.fix.is_some());
+                // A code that also stands where nothing is offered is judged there.
+                let bare = |code| diagnostics.iter().any(|d| d.code == code && d.fix.is_none());
+                slips.extend(offered.filter(|d| !bare(d.code)).map(|d| d.code.as_str()));
+                let Some(next) = mend(&text, SourceId(0), &diagnostics) else { break };
+                text = next.text;
+                mended += 1;
+            }
+            let left = given(&text);
+            let codes: BTreeSet<&str> = left.iter().map(|d| d.code.as_str()).collect();
+            if left.iter().any(|d| d.fix.is_some()) || slips.iter().any(|code| codes.contains(code)) {
+                wrong.push(format!("{}: {slips:?} became {codes:?} in\n{text}", path.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(mended > 10, "{mended} cases were mended");
+}
+
+fn given(text: &str) -> Vec<Diagnostic> {
+    let mut sources = Sources::default();
+    let id = sources.add(Source::new("case.rt", text));
+    let folder = Folder(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/cases/diagnostics").into());
+    compile(&folder, &mut sources, id, &Options::default()).diagnostics
+}
+
 /// Each code the compiler can give has a case, here or among those of the syntax. E0009 is found before there is
-/// a text, and the noise target is judged by the renderer: the command's tests hold both.
+/// a text, and W07xx are judged once a picture is there: the examples of `rtc explain` hold them.
 #[test]
 fn every_code_has_a_case() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases");
@@ -67,7 +117,7 @@ fn every_code_has_a_case() {
         .map(|path| std::fs::read_to_string(path).unwrap())
         .collect();
     for code in Code::ALL {
-        let elsewhere = matches!(code, Code::E0009 | Code::W0701);
+        let elsewhere = matches!(code, Code::E0009 | Code::W0701 | Code::W0702 | Code::W0703);
         assert!(elsewhere || shown.contains(code.as_str()), "no case for {}", code.as_str());
     }
 }

@@ -1,14 +1,15 @@
 //! What the documents say is true: their examples compile, and their tables are the compiler's own.
 //! `INSTA_UPDATE=always cargo test` writes the tables anew.
 
-use crate::folder::Folder;
-use rt_lang::check::Function;
+use rt_lang::check::{self, Function};
 use rt_lang::diagnostic::{Code, Severity};
+use rt_lang::files::{FileError, FilePath, Files};
 use rt_lang::schema::{Category, Field, FieldType, KINDS, KindId, PLACED, Preset};
 use rt_lang::source::{Source, Sources};
 use rt_lang::{Options, color, compile, units};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -23,6 +24,7 @@ fn tables_of_the_reference_are_the_compilers_own() {
         ("units", units_table()),
         ("colours", colours()),
         ("functions", functions_table()),
+        ("textures", textures_table()),
         ("placed", fields_table(PLACED.iter())),
         ("kinds", kinds()),
         ("codes", codes_table()),
@@ -73,6 +75,16 @@ fn functions_table() -> String {
         writeln!(table, "| `{}` | {} |", function.signature(), function.doc()).unwrap();
     }
     table
+}
+
+fn textures_table() -> String {
+    let mut text = String::new();
+    for function in Function::ALL {
+        let Some(parameters) = check::texture_parameters(*function) else { continue };
+        let table = fields_table(parameters.iter()).replacen("field", "argument", 1);
+        writeln!(text, "`{}`: {}\n\n{table}", function.signature(), function.doc()).unwrap();
+    }
+    text
 }
 
 fn codes_table() -> String {
@@ -190,10 +202,24 @@ fn every_scene_in_examples_compiles_without_a_warning() {
     assert!(found >= 10, "{found} examples were found");
 }
 
+/// Whatever picture an example names is there.
+struct AnyPicture;
+
+impl Files for AnyPicture {
+    fn read(&self, path: &FilePath, _: usize) -> Result<Arc<[u8]>, FileError> {
+        let picture = match path.as_str().rsplit_once('.') {
+            Some((_, "png")) => "letter.png",
+            Some((_, "hdr")) => "dusk.hdr",
+            _ => return Err(FileError::Missing),
+        };
+        Ok(std::fs::read(root().join("tests/cases/pictures").join(picture)).unwrap().into())
+    }
+}
+
 fn compiles(name: &str, text: &str) {
     let mut sources = Sources::default();
     let id = sources.add(Source::new(name, text));
-    let compiled = compile(&Folder(root().join("docs")), &mut sources, id, &Options::default());
+    let compiled = compile(&AnyPicture, &mut sources, id, &Options::default());
     assert!(compiled.diagnostics.is_empty(), "{name}:\n{text}\n{:#?}", compiled.diagnostics);
     assert!(compiled.scene.is_some(), "{name}");
 }

@@ -12,7 +12,7 @@ pub(super) use types::*;
 use super::block::{path_span, path_text};
 use super::types::{Kind, Making, Type, describe_wanted, list};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::schema::{self, Category, Field, FieldType, KindId, Preset};
+use crate::schema::{self, Category, Field, FieldType, KindId, Preset, familiar};
 use crate::span::Span;
 use crate::syntax::ast::{Keyword, Name, Path};
 use crate::units;
@@ -64,6 +64,12 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
             diagnostic.help("micrometres are written `um`").fix(name.span, "um")
         }
         None if what == "unit" => diagnostic.help(format!("the units are {}", quoted(candidates))),
+        None if what == "kind"
+            && let Some(here) = familiar::kind(&name.text)
+                .filter(|here| here.name.is_none_or(|name| candidates.contains(&name))) =>
+        {
+            with_familiar(diagnostic, here, name.span, candidates)
+        }
         None if what == "kind" => diagnostic.help(format!("the kinds known here are {}", quoted(candidates))),
         None if what == "name" => diagnostic.help(format!("declare it: `let {} = …`", name.text)),
         None => diagnostic,
@@ -235,7 +241,10 @@ pub(super) fn cannot_hold_statement(span: Span, outer: &str) -> Diagnostic {
 pub(super) fn named_part(kind: &Path, name: &Name, outer: &str) -> Diagnostic {
     let kind = path_text(kind);
     let message = format!("the `{kind}` of a `{outer}` has no name");
-    Diagnostic::new(Code::E0301, message, name.span).at("a name here").help(format!("write `{kind} {{ … }}`"))
+    Diagnostic::new(Code::E0301, message, name.span)
+        .at("a name here")
+        .help(format!("write `{kind} {{ … }}`"))
+        .fix(name.span, "")
 }
 
 pub(super) fn unknown_field(
@@ -248,15 +257,24 @@ pub(super) fn unknown_field(
     let diagnostic =
         Diagnostic::new(Code::E0301, format!("`{kind}` has no field `{}`", name.text), name.span)
             .at("unknown field");
-    match closest(&name.text, free) {
-        Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
-        None if category == Category::Shape && matches!(&*name.text, "color" | "colour") => {
-            diagnostic.help("a colour belongs to a material: `material: diffuse { color: #d94f30 }`")
-        }
-        None if all.is_empty() => {
+    let here = familiar::field(kind, category, &name.text);
+    let here = here.filter(|here| here.name.is_none_or(|name| all.contains(&name)));
+    match (here, closest(&name.text, free)) {
+        (Some(here), _) => with_familiar(diagnostic, here, name.span, free),
+        (None, Some(guess)) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
+        (None, None) if all.is_empty() => {
             diagnostic.help("what a material of any kind has is not known here; name one of them")
         }
-        None => diagnostic.help(format!("its fields are {}", quoted(all))),
+        (None, None) => diagnostic.help(format!("its fields are {}", quoted(all))),
+    }
+}
+
+/// Says what a name from elsewhere is called here; the name is free to be taken where it is among `free`.
+fn with_familiar(diagnostic: Diagnostic, here: familiar::Familiar, span: Span, free: &[&str]) -> Diagnostic {
+    let diagnostic = diagnostic.help(here.hint);
+    match here.name {
+        Some(name) if here.same_value && free.contains(&name) => diagnostic.fix(span, name),
+        _ => diagnostic,
     }
 }
 

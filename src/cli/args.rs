@@ -1,15 +1,15 @@
-//! The flags, their help, and how their values are read: strictly, and with the right form in each refusal.
+//! The flags and their help.
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+mod tools;
+mod values;
+
 use clap::{Args, Parser, Subcommand};
-use rt_lang::lower::MAX_PIXELS;
 use rt_lang::output::Depth;
-use rt_lang::schema::{Key, KindId, Tonemap, Word, camera, render};
+use rt_lang::schema::Tonemap;
 use std::path::PathBuf;
-use std::str::FromStr;
-
-/// More threads than any machine has use for.
-const MOST_THREADS: usize = 1024;
+pub use tools::{Check, Completions, Explain, Info, Init, Man, Messages, Reading, Show};
+pub use values::Denied;
+use values::{crop, depths, exposure, samples, seed, size, stops, threads, tonemaps};
 
 /// Renders .rt scenes: a small text that describes a picture becomes the picture.
 ///
@@ -27,9 +27,11 @@ pub struct Arguments {
 
 const EXAMPLES: &str = "\
 Examples:
+  rtc init balls                         a folder with a first scene
   rtc build balls.rt                     make balls.png
   rtc build balls.rt -o balls.exr        keep the radiance, to develop it later
   rtc check balls.rt                     only look for mistakes
+  rtc explain E0203                      what a message means, with an example
   rtc develop balls.exr -o balls.png     develop it, at another exposure if you like
 
 `rtc build --help` tells about every flag.";
@@ -43,14 +45,16 @@ A first scene, balls.rt:
   sphere { at: (0, 0.5, 0)m, radius: 50cm, material: diffuse { color: #d94f30 } }
 
 Examples:
+  rtc init balls                         a folder with a first scene
   rtc build balls.rt                     make balls.png
   rtc build balls.rt -o balls.exr        keep the radiance, to develop it later
   rtc check balls.rt                     only look for mistakes
+  rtc explain E0203                      what a message means, with an example
   rtc develop balls.exr -o balls.png     develop it, at another exposure if you like
 
 Exit codes:
   0    done (there may be warnings)
-  1    a scene has errors
+  1    a scene has errors, or warnings that are denied
   2    the command line is wrong, or a file cannot be read or written
   101  a bug in rtc
   130  interrupted
@@ -64,10 +68,24 @@ pub enum Command {
     #[command(after_help = BUILD_EXAMPLES)]
     Build(Build),
     /// Looks for mistakes in scenes, and makes no picture.
+    #[command(after_help = tools::CHECK_EXAMPLES)]
     Check(Check),
     /// Develops an EXR that `rtc build` made: exposure, tone mapping and format, without tracing again.
     #[command(after_help = DEVELOP_EXAMPLES)]
     Develop(Develop),
+    /// Tells what a message means, with an example and its mend.
+    #[command(after_help = tools::EXPLAIN_EXAMPLES)]
+    Explain(Explain),
+    /// Tells what is in a scene: parameters, cameras, counts, bounds, files, and what it takes to draw it.
+    Info(Info),
+    /// Makes a folder with a first scene to play with.
+    Init(Init),
+    /// Prints a completion script for a shell.
+    #[command(after_help = tools::COMPLETIONS_EXAMPLES)]
+    Completions(Completions),
+    /// Prints the manual page.
+    #[command(after_help = tools::MAN_EXAMPLES)]
+    Man(Man),
 }
 
 const BUILD_EXAMPLES: &str = "\
@@ -131,6 +149,14 @@ pub struct Build {
     #[allow(missing_docs)]
     pub look: Look,
 
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub reading: Reading,
+
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub messages: Messages,
+
     /// Says nothing but errors.
     #[arg(short, long)]
     pub quiet: bool,
@@ -146,14 +172,6 @@ pub struct Look {
     /// Bits a channel of PNG files.
     #[arg(long, value_name = "8|16", default_value = "8", value_parser = depths())]
     pub bits: Depth,
-}
-
-/// Flags of `rtc check`.
-#[derive(Args)]
-pub struct Check {
-    /// Scenes to look at; `-` is standard input.
-    #[arg(value_name = "FILE", required = true)]
-    pub files: Vec<PathBuf>,
 }
 
 /// Flags of `rtc develop`.
@@ -176,6 +194,10 @@ pub struct Develop {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub look: Look,
+
+    /// Says nothing but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
 }
 
 /// Value of `--exposure`.
@@ -187,90 +209,6 @@ pub enum Exposure {
     Stops(f64),
 }
 
-fn size(text: &str) -> Result<[u32; 2], String> {
-    let wanted = || "width x height in pixels, such as 640x480".to_string();
-    let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wanted)?;
-    let side = |text: &str| text.parse::<u64>().map_err(|_| wanted());
-    let (width, height) = (side(width)?, side(height)?);
-    for side in [width, height] {
-        within(render::KIND, &render::SIZE, side, "a side")?;
-    }
-    if width * height > MAX_PIXELS {
-        return Err(format!(
-            "{width}×{height} are {} pixels, and at most {MAX_PIXELS} are traced",
-            width * height
-        ));
-    }
-    Ok([width as u32, height as u32])
-}
-
-fn samples(text: &str) -> Result<u32, String> {
-    let n = whole(text, "a number of paths a pixel, such as 64")?;
-    within(render::KIND, &render::SAMPLES, n, "the number")?;
-    Ok(n as u32)
-}
-
-fn seed(text: &str) -> Result<u64, String> {
-    let n = whole(text, "a whole number, such as 7")?;
-    within(render::KIND, &render::SEED, n, "the seed")?;
-    Ok(n)
-}
-
-fn threads(text: &str) -> Result<usize, String> {
-    match whole(text, "a number of threads, such as 4")? {
-        0 => Err("at least one thread is needed; leave the flag out for all cores".into()),
-        n if n > MOST_THREADS as u64 => Err(format!("at most {MOST_THREADS} threads")),
-        n => Ok(n as usize),
-    }
-}
-
-fn crop(text: &str) -> Result<[u32; 4], String> {
-    let parts: Vec<u32> = text.split(',').map_while(|part| u32::from_str(part.trim()).ok()).collect();
-    match <[u32; 4]>::try_from(parts) {
-        Ok([_, _, 0, _] | [_, _, _, 0]) => Err("the window has no pixels".into()),
-        Ok(window) if text.split(',').count() == 4 => Ok(window),
-        _ => Err("x, y, width and height in whole pixels, such as 0,0,320,240".into()),
-    }
-}
-
-fn exposure(text: &str) -> Result<Exposure, String> {
-    if text == "auto" {
-        return Ok(Exposure::Auto);
-    }
-    stops(text).map(Exposure::Stops).map_err(|wanted| format!("{wanted}; or auto"))
-}
-
-fn stops(text: &str) -> Result<f64, String> {
-    let stops: f64 = text.parse().map_err(|_| "a number of stops, such as -1.5".to_string())?;
-    let range = camera::KIND.field(camera::EXPOSURE.index(camera::KIND)).range;
-    let wanted = || format!("a number of stops from {} to {}", range.low, range.high);
-    range.contains(stops).then_some(stops).ok_or_else(wanted)
-}
-
-fn whole(text: &str, wanted: &str) -> Result<u64, String> {
-    text.parse().map_err(|_| wanted.to_string())
-}
-
-/// Holds a flag's value to the range of the field that it stands for.
-fn within<T>(kind: KindId, key: &Key<T>, n: u64, what: &str) -> Result<(), String> {
-    let range = kind.field(key.index(kind)).range;
-    let wanted = || format!("{what} is from {} to {}", range.low, range.high);
-    // Beyond 2^53 not every number is one of f64.
-    let exact = n as f64 as u64 == n;
-    (exact && range.contains(n as f64)).then_some(()).ok_or_else(wanted)
-}
-
-fn tonemaps() -> impl TypedValueParser<Value = Tonemap> {
-    let value = |word: &Word| PossibleValue::new(word.name).help(word.doc);
-    let words = PossibleValuesParser::new(Tonemap::WORDS.iter().map(value));
-    words.try_map(|word| Tonemap::from_word(&word).ok_or("not a curve"))
-}
-
-fn depths() -> impl TypedValueParser<Value = Depth> {
-    let bits = PossibleValuesParser::new(["8", "16"]);
-    bits.map(|bits| if bits == "16" { Depth::Sixteen } else { Depth::Eight })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -279,27 +217,5 @@ mod tests {
     fn the_definitions_are_consistent() {
         use clap::CommandFactory;
         Arguments::command().debug_assert();
-    }
-
-    #[test]
-    fn values_are_read_strictly() {
-        assert_eq!(size("640x480"), Ok([640, 480]));
-        assert_eq!(size("640×480"), Ok([640, 480]));
-        for wrong in ["", "640", "640x", "x480", "640x480x3", "-1x5", "0x480", "65537x1", "1e3x5", "6.4x4"] {
-            assert!(size(wrong).is_err(), "{wrong}");
-        }
-        assert_eq!(crop("0,0,320,240"), Ok([0, 0, 320, 240]));
-        for wrong in
-            ["", "0,0,320", "0,0,320,240,1", "0,0,0,240", "0,0,5,0", "-1,0,5,5", "0,0,5,5,", "a,0,5,5"]
-        {
-            assert!(crop(wrong).is_err(), "{wrong}");
-        }
-        assert_eq!(samples("64"), Ok(64));
-        assert!(samples("0").is_err() && samples("1.5").is_err() && samples("99999999").is_err());
-        assert!(threads("0").is_err() && threads("100000").is_err() && threads("-2").is_err());
-        assert_eq!(exposure("-1.25"), Ok(Exposure::Stops(-1.25)));
-        assert_eq!(exposure("auto"), Ok(Exposure::Auto));
-        assert!(exposure("nan").is_err() && exposure("inf").is_err() && exposure("1000").is_err());
-        assert!(seed("9007199254740993").is_err() && seed("-1").is_err());
     }
 }

@@ -1,20 +1,20 @@
 //! `rtc build`: scenes to pictures.
 
 use super::args::{Build, Exposure};
-use super::input::{self, is_standard};
+use super::input::is_standard;
 use super::interrupt::Interrupt;
+use super::messages::{Messenger, on_standard_output};
 use super::progress::{Progress, duration};
 use super::target::{Staged, Target};
 use super::terminal::Terminal;
-use super::{Exit, Problem};
+use super::{Exit, Problem, scene as scenes};
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use rt_lang::diagnostic::Severity;
-use rt_lang::files::NoFiles;
+use rt_lang::Finding;
+use rt_lang::diagnostic::Diagnostic;
 use rt_lang::lower::Overrides;
 use rt_lang::output::{Depth, Facts, Format, Picture, encode};
 use rt_lang::render::{Cancelled, Control, Rendered, Shown, Tracer, Window};
-use rt_lang::scene::{self, Scene};
-use rt_lang::{Options, compile};
+use rt_lang::scene::{self, Background, Scene};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -42,6 +42,10 @@ struct Traced {
     target_met: bool,
     /// What it is exposed by, whoever chose it.
     stops: f64,
+    /// What would be chosen.
+    fitting: f64,
+    /// About the share of the light that the limit of bounces loses.
+    cut: f64,
 }
 
 /// Makes the pictures in turn, also those behind one that fails.
@@ -50,13 +54,16 @@ pub fn run(arguments: &Build, terminal: Terminal, interrupt: &Interrupt) -> Resu
     let threads = ThreadPoolBuilder::new().num_threads(arguments.threads.unwrap_or(0)).build();
     let threads = threads.map_err(|error| Problem::new(format!("cannot start the threads: {error}")))?;
     let context = Context { arguments, threads, terminal, interrupt };
-    let exits = jobs.iter().map(|job| {
-        build(&context, job).unwrap_or_else(|problem| {
+    let mut messenger = Messenger::new(&arguments.messages, terminal, arguments.quiet);
+    let mut worst = Exit::Done;
+    for job in &jobs {
+        worst = worst.max(build(&context, job, &mut messenger).unwrap_or_else(|problem| {
             terminal.problem(&problem);
             Exit::Usage
-        })
-    });
-    Ok(exits.max().unwrap_or(Exit::Done))
+        }));
+    }
+    messenger.finish()?;
+    Ok(worst)
 }
 
 /// What goes where. Everything that can be seen to be wrong before a file is read is found here.
@@ -92,6 +99,10 @@ fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
     }
     refuse_inputs_as_outputs(scenes, &all)?;
     refuse_idle_depth(arguments.look.bits, &all)?;
+    if on_standard_output(&arguments.messages) && all.iter().any(|target| is_standard(&target.path)) {
+        let problem = Problem::new("the picture and the messages would both go to standard output");
+        return Err(problem.help("write the picture to a file, or use `--message-format short`"));
+    }
     Ok(jobs)
 }
 
@@ -144,35 +155,58 @@ fn same(path: &Path) -> PathBuf {
     fs::canonicalize(path).ok().or_else(in_folder).unwrap_or_else(|| path.into())
 }
 
-fn build(context: &Context, job: &Job) -> Result<Exit, Problem> {
+fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit, Problem> {
     let Context { arguments, terminal, .. } = *context;
     let start = Instant::now();
-    let mut input = input::read(&job.scene)?;
-    if let Some(refused) = input.refused {
-        terminal.diagnostics(&[refused], &input.sources);
+    let loaded = scenes::load(&job.scene, &arguments.reading, &overrides(arguments))?;
+    let compiled = &loaded.compiled;
+    let mut exit = messenger.say(&compiled.diagnostics, &loaded.sources)?;
+    let Some(scene) = compiled.scene.as_ref().filter(|_| exit == Exit::Done) else {
         return Ok(Exit::Diagnostics);
-    }
-    let options = Options { overrides: overrides(arguments), ..Options::default() };
-    let mut compiled = compile(&NoFiles, &mut input.sources, input.id, &options);
-    if arguments.quiet {
-        compiled.diagnostics.retain(|diagnostic| diagnostic.severity() == Severity::Error);
-    }
-    terminal.diagnostics(&compiled.diagnostics, &input.sources);
-    let Some(scene) = &compiled.scene else { return Ok(Exit::Diagnostics) };
+    };
     let window = window(scene, arguments.crop)?;
-    let staged = stage(job, window, context.interrupt)?;
+    let staged = stage(job, scene, window, context.interrupt)?;
     let Ok(traced) = trace(context, job, scene, window) else { context.interrupt.wait() };
     let facts = facts(scene, &traced);
     context.threads.install(|| write(&traced.picture, &facts, arguments.look.bits, staged))?;
+    let findings = findings(scene, &traced);
+    let warnings: Vec<Diagnostic> = findings.iter().filter_map(|finding| compiled.judge(finding)).collect();
+    if !warnings.is_empty() {
+        exit = exit.max(messenger.say(&warnings, &loaded.sources)?);
+    }
     if !arguments.quiet {
-        if !traced.target_met {
-            let warning = compiled.noise_not_reached(traced.noise, traced.samples);
-            terminal.diagnostics(&[warning], &input.sources);
-        }
         compiled.notes.iter().for_each(|note| terminal.line(note));
         terminal.line(&summary(job, scene, &traced, start.elapsed()));
     }
-    Ok(Exit::Done)
+    Ok(exit)
+}
+
+/// The share of the light that may be lost to the limit of bounces before it is worth a warning.
+const MOST_CUT: f64 = 0.05;
+/// Limits below ask for what glows, or for direct light, and mean it.
+const FEW_BOUNCES: u32 = 2;
+/// The share of a picture that may burn out to white, by an exposure that was given.
+const MOST_BURNT_OUT: f64 = 0.25;
+
+/// What is probably not meant in a picture that is done.
+fn findings(scene: &Scene, traced: &Traced) -> Vec<Finding> {
+    let Traced { stops, fitting, samples, noise, .. } = *traced;
+    let mut findings = vec![];
+    if !traced.target_met {
+        findings.push(Finding::Noisy { noise, samples });
+    }
+    let bounces = scene.trace.bounces;
+    if bounces >= FEW_BOUNCES && traced.cut > MOST_CUT {
+        findings.push(Finding::Cut { share: traced.cut, bounces });
+    }
+    if scene.develop.exposure.is_some() {
+        let share = traced.picture.burnt_out(stops, scene.develop.tonemap);
+        // Where nothing darker would be chosen, a white picture is the one that is meant.
+        if share >= MOST_BURNT_OUT && fitting < stops {
+            findings.push(Finding::BurntOut { share, stops, fitting });
+        }
+    }
+    findings
 }
 
 fn facts(scene: &Scene, traced: &Traced) -> Facts {
@@ -234,10 +268,16 @@ fn window(scene: &Scene, crop: Option<[u32; 4]>) -> Result<Window, Problem> {
 }
 
 /// Makes sure before any work that every output can be written.
-fn stage(job: &Job, window: Window, interrupt: &Interrupt) -> Result<Vec<Staged>, Problem> {
+fn stage(job: &Job, scene: &Scene, window: Window, interrupt: &Interrupt) -> Result<Vec<Staged>, Problem> {
     for target in &job.targets {
         if let Some(reason) = target.format.refuses([window.width, window.height]) {
             return Err(Problem::new(reason.to_string()));
+        }
+        if scene.trace.background == Background::Transparent
+            && let Some(reason) = target.format.refuses_alpha()
+        {
+            let help = "write another format, or leave `background: transparent` out";
+            return Err(Problem::new(reason.to_string()).help(help));
         }
     }
     job.targets.iter().map(|target| target.stage(interrupt)).collect()
@@ -261,8 +301,12 @@ fn trace(context: &Context, job: &Job, scene: &Scene, window: Window) -> Result<
         let (offset, size) = ([window.x, window.y], [window.width, window.height]);
         let mean = |x, y| rendered.film.mean(x, y);
         let picture = Picture::gather(scene.trace.size, offset, size, mean);
+        let picture = match scene.trace.background {
+            Background::Sky => picture,
+            Background::Transparent => picture.with_alpha(|x, y| rendered.film.alpha(x, y)),
+        };
         let Rendered { samples, noise, target_met, .. } = rendered;
-        Ok(Traced { picture, samples, noise, target_met, stops })
+        Ok(Traced { picture, samples, noise, target_met, stops, fitting: chosen, cut: prepass.cut })
     })
 }
 
@@ -279,7 +323,7 @@ pub fn write(picture: &Picture, facts: &Facts, depth: Depth, mut staged: Vec<Sta
 }
 
 /// The outputs as a list.
-fn names(targets: &[Target]) -> String {
+pub fn names(targets: &[Target]) -> String {
     let name = |target: &Target| match is_standard(&target.path) {
         true => "standard output".to_string(),
         false => target.path.display().to_string(),

@@ -1,32 +1,92 @@
-//! `rtc check`: looks for mistakes, and makes no picture.
+//! `rtc check`: looks for mistakes, and makes no picture; with `--fix`, mends those whose mend is certain.
 
-use super::Exit;
-use super::args::Check;
-use super::input;
+use super::args::{Check, Reading};
+use super::input::{Input, is_standard};
+use super::interrupt::Interrupt;
+use super::messages::{Messenger, on_standard_output};
+use super::scene::{self, Loaded};
+use super::target::{Aside, print};
 use super::terminal::Terminal;
-use rt_lang::diagnostic::any_errors;
-use rt_lang::files::NoFiles;
-use rt_lang::{Options, compile};
+use super::{Exit, Problem};
+use rt_lang::lower::Overrides;
+use rt_lang::mend::mend;
+use rt_lang::report;
+use rt_lang::source::Source;
+use std::collections::BTreeSet;
 use std::path::Path;
 
+/// Rounds of mending, each on what the last one left. Most files need one or two.
+const MOST_ROUNDS: usize = 100;
+
 /// Checks every file, also those behind one that fails.
-pub fn run(arguments: &Check, terminal: Terminal) -> Exit {
-    let exits = arguments.files.iter().map(|file| check(file, terminal));
-    exits.max().unwrap_or(Exit::Done)
+pub fn run(arguments: &Check, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
+    let Check { files, fix, reading, messages } = arguments;
+    if *fix && files.iter().any(|file| is_standard(file)) {
+        if files.len() > 1 {
+            return Err(Problem::new("standard input can only be mended alone"));
+        }
+        if on_standard_output(messages) {
+            let problem = Problem::new("the mended scene and the messages would both go to standard output");
+            return Err(problem.help("use `--message-format short`, or mend a file"));
+        }
+    }
+    let mut messenger = Messenger::new(messages, terminal, false);
+    let mut worst = Exit::Done;
+    for file in files {
+        let loaded = match fix {
+            true => fixed(file, reading, terminal, interrupt),
+            false => scene::load(file, reading, &Overrides::default()),
+        };
+        worst = worst.max(match loaded {
+            Ok(loaded) => messenger.say(&loaded.compiled.diagnostics, &loaded.sources)?,
+            Err(problem) => {
+                terminal.problem(&problem);
+                Exit::Usage
+            }
+        });
+    }
+    messenger.finish()?;
+    Ok(worst)
 }
 
-fn check(file: &Path, terminal: Terminal) -> Exit {
-    let mut input = match input::read(file) {
-        Ok(input) => input,
-        Err(problem) => {
-            terminal.problem(&problem);
-            return Exit::Usage;
+/// Mends a scene, and gives what is left to say of it.
+fn fixed(
+    path: &Path,
+    reading: &Reading,
+    terminal: Terminal,
+    interrupt: &Interrupt,
+) -> Result<Loaded, Problem> {
+    let mut loaded = scene::load(path, reading, &Overrides::default())?;
+    let before = loaded.sources.get(loaded.id).text.clone();
+    let refused = loaded
+        .compiled
+        .diagnostics
+        .iter()
+        .any(|diagnostic| diagnostic.code == rt_lang::diagnostic::Code::E0009);
+    let mut seen = BTreeSet::from([before.clone()]);
+    let mut done = vec![];
+    while seen.len() <= MOST_ROUNDS {
+        let source = loaded.sources.get(loaded.id);
+        let Some(mended) = mend(&source.text, loaded.id, &loaded.compiled.diagnostics) else { break };
+        // A mend that leads back would go on for ever.
+        if !seen.insert(mended.text.clone()) {
+            break;
         }
-    };
-    let diagnostics = match input.refused {
-        Some(refused) => vec![refused],
-        None => compile(&NoFiles, &mut input.sources, input.id, &Options::default()).diagnostics,
-    };
-    terminal.diagnostics(&diagnostics, &input.sources);
-    if any_errors(&diagnostics) { Exit::Diagnostics } else { Exit::Done }
+        let said = mended.applied.iter().map(|&index| &loaded.compiled.diagnostics[index]);
+        done.extend(said.map(|diagnostic| report::short(diagnostic, &loaded.sources)));
+        let input = Input::of(Source::new(source.name.clone(), mended.text));
+        loaded = scene::take(path, input, reading, &Overrides::default())?;
+    }
+    let text = &loaded.sources.get(loaded.id).text;
+    if is_standard(path) {
+        if !refused {
+            print(text.as_bytes())?;
+        }
+    } else if *text != before {
+        let mut aside = Aside::beside(path, interrupt)?;
+        aside.write(text.as_bytes())?;
+        aside.finish()?;
+    }
+    done.iter().for_each(|line| terminal.line(&format!("mended {line}")));
+    Ok(loaded)
 }

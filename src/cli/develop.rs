@@ -3,6 +3,7 @@
 use super::args::Develop;
 use super::interrupt::Interrupt;
 use super::target::Staged;
+use super::terminal::Terminal;
 use super::{Exit, Problem, build, input};
 use rt_lang::output::{MOST_PIXELS, decode_exr};
 
@@ -10,7 +11,7 @@ use rt_lang::output::{MOST_PIXELS, decode_exr};
 const LARGEST: u64 = MOST_PIXELS * 16;
 
 /// Develops one picture into all its outputs.
-pub fn run(arguments: &Develop, interrupt: &Interrupt) -> Result<Exit, Problem> {
+pub fn run(arguments: &Develop, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
     let targets = build::targets(&arguments.outputs)?;
     build::refuse_inputs_as_outputs(std::slice::from_ref(&arguments.input), &targets)?;
     build::refuse_idle_depth(arguments.look.bits, &targets)?;
@@ -23,5 +24,10 @@ pub fn run(arguments: &Develop, interrupt: &Interrupt) -> Result<Exit, Problem> 
     facts.tonemap = arguments.look.tonemap.or(facts.tonemap);
     let staged: Result<Vec<Staged>, Problem> = targets.iter().map(|target| target.stage(interrupt)).collect();
     build::write(&picture, &facts, arguments.look.bits, staged?)?;
+    if !arguments.quiet {
+        let [width, height] = picture.size;
+        let stops = facts.stops.unwrap_or(0.0);
+        terminal.line(&format!("{}: {width}×{height}, exposure {stops}", build::names(&targets)));
+    }
     Ok(Exit::Done)
 }

@@ -19,6 +19,15 @@ pub struct Input {
     pub refused: Option<Diagnostic>,
 }
 
+impl Input {
+    /// A text that is at hand.
+    pub fn of(source: Source) -> Input {
+        let mut sources = Sources::default();
+        let id = sources.add(source);
+        Input { sources, id, refused: None }
+    }
+}
+
 /// Whether a path means standard input or output.
 pub fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"

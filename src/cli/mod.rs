@@ -4,19 +4,29 @@
 //! |---|---|
 //! | [`args`] | the flags, their help, and how their values are read |
 //! | [`input`] | scene files and standard input to sources |
-//! | [`target`] | where pictures go, and that they arrive there whole or not at all |
+//! | [`files`] | the disk as a scene may see it |
+//! | [`scene`] | a scene with all that it reads, compiled |
+//! | [`messages`] | what the compiler says, in the form that was asked for |
+//! | [`target`] | where pictures and texts go, and that they arrive there whole or not at all |
 //! | [`interrupt`] | Ctrl-C |
 //! | [`terminal`] | the one writer to standard error |
 //! | [`progress`] | how far a picture is |
-//! | [`build`], [`check`], [`develop`] | the commands |
+//! | [`build`], [`check`], [`develop`], [`explain`], [`info`], [`init`], [`manual`] | the commands |
 
 mod args;
 mod build;
 mod check;
 mod develop;
+mod explain;
+mod files;
+mod info;
+mod init;
 mod input;
 mod interrupt;
+mod manual;
+mod messages;
 mod progress;
+mod scene;
 mod target;
 mod terminal;
 
@@ -31,7 +41,7 @@ use terminal::Terminal;
 enum Exit {
     /// All is done.
     Done = 0,
-    /// A scene has errors.
+    /// A scene has errors, or warnings that are denied.
     Diagnostics = 1,
     /// The command line is wrong, or a file cannot be read or written.
     Usage = 2,
@@ -79,8 +89,13 @@ pub fn main() -> ExitCode {
     let interrupt = Interrupt::install(terminal);
     let ended = match arguments.command {
         Command::Build(build) => build::run(&build, terminal, &interrupt),
-        Command::Check(check) => Ok(check::run(&check, terminal)),
-        Command::Develop(develop) => develop::run(&develop, &interrupt),
+        Command::Check(check) => check::run(&check, terminal, &interrupt),
+        Command::Develop(develop) => develop::run(&develop, terminal, &interrupt),
+        Command::Explain(explain) => explain::run(&explain),
+        Command::Info(info) => info::run(&info, terminal),
+        Command::Init(init) => init::run(&init),
+        Command::Completions(completions) => manual::completions(&completions),
+        Command::Man(man) => manual::man(&man),
     };
     let exit = ended.unwrap_or_else(|problem| {
         terminal.problem(&problem);

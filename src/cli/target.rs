@@ -1,4 +1,4 @@
-//! Where pictures go. A file is written beside its place and moved there when it is whole; until then
+//! Where pictures and texts go. A file is written beside its place and moved there when it is whole; until then
 //! whatever was there before stays.
 
 use super::input::is_standard;
@@ -54,17 +54,33 @@ impl Target {
                 let problem = Problem::new("a picture is not text: it is not written to a terminal");
                 return Err(problem.help("send it to a file or a program: `-o - > picture.png`"));
             }
-            return Ok(Staged { target: self.clone(), file: None, interrupt: interrupt.clone() });
+            return Ok(Staged { target: self.clone(), aside: None });
         }
-        let cannot =
-            |reason: String| Problem::new(format!("cannot write `{}`: {reason}", self.path.display()));
-        let existing = fs::metadata(&self.path).ok();
+        let aside = Aside::beside(&self.path, interrupt)?;
+        Ok(Staged { target: self.clone(), aside: Some(aside) })
+    }
+}
+
+/// A file that is written beside its place, and moved there when it is whole. Dropped, it leaves no trace.
+pub struct Aside {
+    /// The place as given.
+    path: PathBuf,
+    /// The file, and its place with links resolved; none once it is moved.
+    file: Option<(NamedTempFile, PathBuf)>,
+    interrupt: Interrupt,
+}
+
+impl Aside {
+    /// Makes the file beside its place, which shows that it can be written.
+    pub fn beside(path: &Path, interrupt: &Interrupt) -> Result<Aside, Problem> {
+        let cannot = |reason: String| Problem::new(format!("cannot write `{}`: {reason}", path.display()));
+        let existing = fs::metadata(path).ok();
         if existing.as_ref().is_some_and(|existing| !existing.is_file()) {
             return Err(cannot("there is something that is not a file".into()));
         }
         // Where a link stands, what it points to is replaced, not the link.
-        let path = fs::canonicalize(&self.path).unwrap_or_else(|_| self.path.clone());
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let place = fs::canonicalize(path).unwrap_or_else(|_| path.into());
+        let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         if !folder.is_dir() {
             return Err(cannot(format!("there is no folder `{}`", folder.display())));
         }
@@ -74,8 +90,44 @@ impl Target {
             Ok((file, path))
         });
         let file = made.map_err(|error| cannot(plain(&error)))?;
-        Ok(Staged { target: self.clone(), file: Some((file, path)), interrupt: interrupt.clone() })
+        Ok(Aside { path: path.into(), file: Some((file, place)), interrupt: interrupt.clone() })
     }
+
+    /// Writes all bytes and waits until they are on the disk.
+    pub fn write(&mut self, bytes: &[u8]) -> Result<(), Problem> {
+        let Some((file, _)) = &mut self.file else { return Ok(()) };
+        let file = file.as_file_mut();
+        let written = file.write_all(bytes).and_then(|()| file.sync_all());
+        written.map_err(|error| cannot_write(&format!("`{}`", self.path.display()), &error))
+    }
+
+    /// Moves the file to its place.
+    pub fn finish(mut self) -> Result<(), Problem> {
+        let Some((file, place)) = self.file.take() else { return Ok(()) };
+        let path = file.path().to_path_buf();
+        let moved = self.interrupt.settle(&path, || file.persist(place).map(drop).map_err(|e| e.error));
+        moved.map_err(|error| cannot_write(&format!("`{}`", self.path.display()), &error))
+    }
+}
+
+impl Drop for Aside {
+    fn drop(&mut self) {
+        if let Some((file, _)) = self.file.take() {
+            let path = file.path().to_path_buf();
+            self.interrupt.settle(&path, || drop(file));
+        }
+    }
+}
+
+/// Writes to standard output.
+pub fn print(bytes: &[u8]) -> Result<(), Problem> {
+    let mut stdout = stdout().lock();
+    let written = stdout.write_all(bytes).and_then(|()| stdout.flush());
+    written.map_err(|error| cannot_write("standard output", &error))
+}
+
+fn cannot_write(name: &str, error: &io::Error) -> Problem {
+    Problem::new(format!("cannot write {name}: {}", plain(error)))
 }
 
 /// The permissions of a file that is replaced, else those that the umask leaves.
@@ -101,54 +153,25 @@ fn known_formats() -> String {
     format!("the formats are {known}; standard output is `-` (PNG) or `exr:-`")
 }
 
-/// A place that has been made sure of. Dropped, it leaves no trace.
+/// A place that has been made sure of.
 pub struct Staged {
     /// What it is for.
     pub target: Target,
-    /// The file beside its place, and the place; none for standard output.
-    file: Option<(NamedTempFile, PathBuf)>,
-    interrupt: Interrupt,
+    /// The file beside its place; none for standard output.
+    aside: Option<Aside>,
 }
 
 impl Staged {
     /// Writes all bytes and waits until they are on the disk.
     pub fn write(&mut self, bytes: &[u8]) -> Result<(), Problem> {
-        let written = match &mut self.file {
-            Some((file, _)) => {
-                let file = file.as_file_mut();
-                file.write_all(bytes).and_then(|()| file.sync_all())
-            }
-            None => {
-                let mut stdout = stdout().lock();
-                stdout.write_all(bytes).and_then(|()| stdout.flush())
-            }
-        };
-        written.map_err(|error| self.cannot(&error))
+        match &mut self.aside {
+            Some(aside) => aside.write(bytes),
+            None => print(bytes),
+        }
     }
 
     /// Moves the file to its place.
-    pub fn finish(mut self) -> Result<(), Problem> {
-        let Some((file, place)) = self.file.take() else { return Ok(()) };
-        let path = file.path().to_path_buf();
-        let moved = self.interrupt.settle(&path, || file.persist(place).map(drop).map_err(|e| e.error));
-        moved.map_err(|error| self.cannot(&error))
-    }
-
-    fn cannot(&self, error: &io::Error) -> Problem {
-        let name = if is_standard(&self.target.path) {
-            "standard output".to_string()
-        } else {
-            format!("`{}`", self.target.path.display())
-        };
-        Problem::new(format!("cannot write {name}: {}", plain(error)))
-    }
-}
-
-impl Drop for Staged {
-    fn drop(&mut self) {
-        if let Some((file, _)) = self.file.take() {
-            let path = file.path().to_path_buf();
-            self.interrupt.settle(&path, || drop(file));
-        }
+    pub fn finish(self) -> Result<(), Problem> {
+        self.aside.map_or(Ok(()), Aside::finish)
     }
 }

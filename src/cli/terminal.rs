@@ -48,7 +48,8 @@ impl Terminal {
         self.text(&report::all(diagnostics, sources, self.style));
     }
 
-    fn text(self, text: &str) {
+    /// Writes a text that has its line ends.
+    pub fn text(self, text: &str) {
         let mut stderr = stderr().lock();
         let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
     }

@@ -65,7 +65,27 @@ pub(super) fn out_of_range(kind: KindId, field: &Field, value: &Value, span: Spa
     }
     let what = if is_color(field.ty) { "channels of " } else { "" };
     let message = format!("{what}`{}` must be {allowed}, this is {shown}", field.name);
-    Some(Diagnostic::new(Code::E0401, message, span).at("out of range").help(field.doc.to_string()))
+    let diagnostic = Diagnostic::new(Code::E0401, message, span).at("out of range");
+    Some(match mend_of_range(field, bad) {
+        Some(help) => diagnostic.help(help),
+        None => diagnostic,
+    })
+}
+
+/// What is probably meant by a value out of range, where that is more than the range itself says.
+fn mend_of_range(field: &Field, bad: f64) -> Option<String> {
+    let Range { low, high, .. } = field.range;
+    let ratio = field.ty == FieldType::Scalar(units::NONE) && high == 1.0;
+    match () {
+        () if field.ty == FieldType::Color => Some("channels of light begin at 0, which is black".into()),
+        () if ratio && (2.0..=100.0).contains(&bad) => {
+            Some(format!("a ratio may be written in percent: `{}%`", show(bad)))
+        }
+        () if low >= 0.0 && bad < 0.0 && field.range.contains(-bad) => {
+            Some(format!("without its sign it would fit: `{}`", show_quantity(-bad, dimension(field.ty))))
+        }
+        () => None,
+    }
 }
 
 fn is_color(ty: FieldType) -> bool {
@@ -91,7 +111,9 @@ pub(super) fn no_direction(field: &Field, span: Span) -> Diagnostic {
 
 pub(super) fn too_many_textures(span: Span) -> Diagnostic {
     let message = format!("more than {MAX_TEXTURE_LEVELS} textures within each other");
-    Diagnostic::new(Code::E0406, message, span).at("one too many")
+    Diagnostic::new(Code::E0406, message, span)
+        .at("one too many")
+        .help("draw the pattern into a picture and use `image`")
 }
 
 fn dimension(ty: FieldType) -> Dim {

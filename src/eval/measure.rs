@@ -10,7 +10,7 @@ use crate::span::Span;
 use std::rc::Rc;
 
 /// Says where a thing is. Lowering knows, and is handed in by whoever puts the stages together.
-pub type Measure = fn(&Things, &Thing) -> Result<Reach, Box<Diagnostic>>;
+pub type Measure<'m> = &'m dyn Fn(&Things, &Thing) -> Result<Reach, Box<Diagnostic>>;
 
 /// Where a thing is.
 #[derive(Clone, Copy, Debug)]

@@ -53,7 +53,7 @@ pub fn eval(program: &Program, limits: Limits, measure: Measure) -> (Things, Vec
 struct Evaluator<'p> {
     program: &'p Program,
     limits: Limits,
-    measure: Measure,
+    measure: Measure<'p>,
     /// Where defaults are read.
     defaults: Things,
     /// The values of names: of the innermost part, function or file.
@@ -94,7 +94,7 @@ struct Evaluator<'p> {
 }
 
 impl<'p> Evaluator<'p> {
-    fn new(program: &'p Program, limits: Limits, measure: Measure) -> Evaluator<'p> {
+    fn new(program: &'p Program, limits: Limits, measure: Measure<'p>) -> Evaluator<'p> {
         Evaluator {
             program,
             limits,
@@ -154,7 +154,7 @@ impl<'p> Evaluator<'p> {
     /// An expression by itself, as the value of a default.
     fn alone(expr: &Expr) -> Value {
         let program = Program::default();
-        let measure: Measure = |_, _| Ok(Reach::Nowhere);
+        let measure: Measure = &|_, _| Ok(Reach::Nowhere);
         Evaluator::new(&program, Limits::default(), measure).expr(expr)
     }
 

@@ -4,7 +4,7 @@ use super::texture::Paint;
 use super::value::{Made, ThingId, Value};
 use crate::color::Rgb;
 use crate::math::{DAffine3, DVec3};
-use crate::schema::{self, Filter, Tonemap, Typed};
+use crate::schema::{self, Background, Filter, Tonemap, Typed};
 use smol_str::SmolStr;
 use std::rc::Rc;
 
@@ -61,6 +61,7 @@ reads! {
     LensPart as Rc<Made>: Value::Made(made) => Some(made.clone());
     CameraName as ThingId: Value::Thing(thing) => Some(thing.id);
     FilterWord as Filter: Value::Word(word) => Filter::from_word(word);
+    BackgroundWord as Background: Value::Word(word) => Background::from_word(word);
     TonemapWord as Tonemap: Value::Word(word) => Tonemap::from_word(word);
     Point as DVec3: value => triple(value);
     Vector as DVec3: value => triple(value);

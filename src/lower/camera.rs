@@ -3,8 +3,8 @@
 use super::{Blocks, Extent, Lowering, errors, shape::unit};
 use crate::eval::{Aim, Focus, Made, ThingId};
 use crate::math::{DVec2, DVec3, atan2, sin, tan};
-use crate::scene::Camera;
 use crate::scene::shape::Bounds;
+use crate::scene::{Camera, Projection};
 use crate::schema::{DEFAULT_FOV, camera, lens};
 use crate::span::Span;
 
@@ -26,9 +26,16 @@ impl Lowering<'_> {
             return None;
         }
         let lens = self.lens(&made, blocks)?;
-        let fov = self.fov(&made, lens.as_deref())?;
+        let (projection, half_width) = match made.given(camera::WIDTH) {
+            Some((_, width)) if lens.is_some() => {
+                let lens = blocks.lens.map(|lens| lens.made.span);
+                self.report(errors::lens_of_parallel(lens.unwrap_or(width), width));
+                return None;
+            }
+            Some((width, _)) => (Projection::Orthographic, 0.5 * width),
+            None => (Projection::Perspective, tan(0.5 * self.fov(&made, lens.as_deref())?)),
+        };
         let [width, height] = size.unwrap_or([4, 3]).map(f64::from);
-        let half_width = tan(0.5 * fov);
         let half_extent = DVec2::new(half_width, half_width * height / width);
 
         let (center, radius) = self.middle();
@@ -39,8 +46,12 @@ impl Lowering<'_> {
         let position = match made.given(camera::FROM) {
             Some((from, _)) => from,
             None => {
-                let half_angle = atan2(half_extent.min_element(), 1.0);
-                let position = look + THREE_QUARTER.normalize() * (MARGIN * radius / sin(half_angle));
+                let away = match projection {
+                    Projection::Perspective => radius / sin(atan2(half_extent.min_element(), 1.0)),
+                    // Far enough for everything to be in front; the width was chosen.
+                    Projection::Orthographic => radius + look.distance(center),
+                };
+                let position = look + THREE_QUARTER.normalize() * (MARGIN * away);
                 self.say_placed(blocks.camera.is_some(), position, look);
                 position
             }
@@ -60,7 +71,10 @@ impl Lowering<'_> {
             Some(lens) => self.opening(lens, position, forward, look)?,
             None => (0.0, 1.0),
         };
-        let camera = Camera { position, right, up, forward, half_extent, lens_radius, focus };
+        if self.overrides.exposure.is_none() {
+            self.out.places.exposure = made.given(camera::EXPOSURE).map(|(_, span)| span);
+        }
+        let camera = Camera { projection, position, right, up, forward, half_extent, lens_radius, focus };
         Some((camera, self.things.read(&made, camera::EXPOSURE)))
     }
 
@@ -115,7 +129,7 @@ impl Lowering<'_> {
         }
     }
 
-    fn aim(&mut self, aim: Aim, span: Span) -> Option<DVec3> {
+    pub(super) fn aim(&mut self, aim: Aim, span: Span) -> Option<DVec3> {
         match aim {
             Aim::Point(point) => Some(point),
             Aim::Thing(id) => self.center(id, span),

@@ -109,6 +109,18 @@ pub(super) fn no_picture(written: &str, why: &str, span: Span) -> Diagnostic {
         .help("a picture is an opaque PNG, JPEG, WebP, HDR or EXR")
 }
 
+pub(super) fn no_mesh(written: &str, why: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0501, format!("`{written}` {why}"), span)
+        .at("not usable as a mesh")
+        .help("a mesh is a PLY or OBJ file with faces")
+}
+
+pub(super) fn too_many_triangles(most: usize, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0406, format!("the meshes have more than {most} triangles together"), span)
+        .at("one too many")
+        .help("simplify the mesh; copies of one file count once")
+}
+
 pub(super) fn too_many_texels(most: u64, span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0406, format!("the pictures have more than {most} pixels together"), span)
         .at("one too many")
@@ -194,6 +206,19 @@ pub(super) fn focus_behind(span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0401, "the plane of focus lies behind the camera", span)
         .at("not in front")
         .help("focus on what the camera looks at")
+}
+
+pub(super) fn lens_of_parallel(lens: Span, width: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0304, "an orthographic camera has no lens", lens)
+        .at("a lens")
+        .label(width, "which makes the camera orthographic")
+        .help("give `fov` in place of `width`, or leave the lens out")
+}
+
+pub(super) fn aimed_at_itself(aim: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0404, "the spot is aimed at the point where it stands", aim)
+        .at("no direction")
+        .help("move the light away from what it shines at")
 }
 
 pub(super) fn fov_and_focal(fov: Span, focal: Span) -> Diagnostic {

@@ -4,15 +4,16 @@
 mod camera;
 mod errors;
 mod material;
+mod mesh;
 mod shape;
 mod sky;
 mod texture;
 
 use crate::color::Rgb;
 use crate::diagnostic::Diagnostic;
-use crate::eval::{Reach, Thing, ThingId, Things};
+use crate::eval::{Aim, Reach, Thing, ThingId, Things};
 use crate::files::Files;
-use crate::math::{DAffine3, DVec3};
+use crate::math::{DAffine3, DVec3, PI, sin};
 use crate::scene::shape::Bounds;
 use crate::scene::{
     Develop, FrameId, Light, Material, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace,
@@ -21,6 +22,7 @@ use crate::schema::{self, Category, DEFAULT_SAMPLES, KindId, light, render, sun}
 use crate::source::Sources;
 use crate::span::{SourceId, Span};
 use material::Materials;
+pub use mesh::Meshes;
 use texture::Textures;
 
 /// The most pixels a picture may have.
@@ -52,12 +54,29 @@ pub struct Lowered {
     pub notes: Vec<String>,
     /// What is wrong.
     pub diagnostics: Vec<Diagnostic>,
-    /// Where the noise target stands.
+    /// Where settings stand that only a finished picture can judge.
+    pub places: Places,
+}
+
+/// Where settings stand that only a finished picture can judge; none where the source does not give them.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Places {
+    /// The noise target.
     pub noise: Option<Span>,
+    /// The limit of bounces.
+    pub bounces: Option<Span>,
+    /// The exposure that is in force.
+    pub exposure: Option<Span>,
 }
 
 /// Lowers the things of a picture. Things with errors, which were reported, are left out.
-pub fn lower(things: &Things, overrides: &Overrides, files: &dyn Files, sources: &Sources) -> Lowered {
+pub fn lower(
+    things: &Things,
+    overrides: &Overrides,
+    files: &dyn Files,
+    sources: &Sources,
+    meshes: &Meshes,
+) -> Lowered {
     let written = written_blocks(things);
     let mut lowering = Lowering {
         things,
@@ -66,6 +85,7 @@ pub fn lower(things: &Things, overrides: &Overrides, files: &dyn Files, sources:
         primitives: vec![],
         materials: Materials::default(),
         textures: Textures::new(files, sources),
+        meshes,
         frames: vec![],
         lights: vec![],
         extents: vec![Extent::Nowhere; things.len()],
@@ -103,9 +123,11 @@ pub fn nothing_to_see(things: &Things, main: SourceId) -> Option<Diagnostic> {
 }
 
 /// Where a thing is, for what asks before there is a scene.
-pub fn measure(things: &Things, thing: &Thing) -> Result<Reach, Box<Diagnostic>> {
+pub fn measure(things: &Things, thing: &Thing, meshes: &Meshes) -> Result<Reach, Box<Diagnostic>> {
     let (made, kind) = (&thing.made, thing.made.kind);
-    let shape = if kind.get().category == Category::Shape {
+    let shape = if kind == schema::mesh::KIND {
+        meshes.lower(things, thing)?
+    } else if kind.get().category == Category::Shape {
         shape::lower(things, thing)?
     } else if kind == light::KIND {
         let at = things.read(made, light::AT);
@@ -135,6 +157,7 @@ struct Lowering<'a> {
     primitives: Vec<Primitive>,
     materials: Materials,
     textures: Textures<'a>,
+    meshes: &'a Meshes<'a>,
     frames: Vec<DAffine3>,
     lights: Vec<Light>,
     /// By thing.
@@ -172,10 +195,10 @@ impl<'a> Lowering<'a> {
 
     fn surfaces_and_lights(&mut self) {
         let mut sky_place = None;
+        let mut spots = vec![];
         for (index, thing) in self.things.iter().enumerate() {
-            let thing = &thing;
             if thing.hidden {
-                self.hidden(index, thing);
+                self.hidden(index, &thing);
                 continue;
             }
             let sound =
@@ -192,26 +215,64 @@ impl<'a> Lowering<'a> {
                 continue;
             }
             if kind.get().category == Category::Shape {
-                self.surface(index, thing);
+                self.surface(index, &thing);
             } else if kind == light::KIND {
-                self.lamp(index, thing);
+                self.lamp(index, &thing);
+                if let Some((aim, span)) = thing.made.given(light::AIM) {
+                    spots.push((index, thing, aim, span));
+                }
             } else if kind == sun::KIND {
-                self.sun(thing);
+                self.sun(&thing);
             } else if kind == schema::sky::KIND {
-                self.sky(thing);
+                self.sky(&thing);
             }
         }
+        for (index, thing, aim, span) in spots {
+            self.spot(index, &thing, aim, span);
+        }
+    }
+
+    /// A lamp that shines into a cone, in the place that was found for it.
+    fn spot(&mut self, index: usize, thing: &Thing, aim: Aim, span: Span) {
+        let Extent::Lamp(Bounds { min: position, .. }) = self.extents[index] else { return };
+        let target = match aim {
+            Aim::Point(point) => Some(thing.world_from_object.transform_point3(point)),
+            Aim::Thing(_) => self.aim(aim, span),
+        };
+        let Some(target) = target else { return };
+        let Some(direction) = shape::unit(target - position) else {
+            return self.report(self.used_at(thing, errors::aimed_at_itself(span)));
+        };
+        let made = &thing.made;
+        let Some((cone, _)) = made.given(light::CONE) else { return };
+        let outer = 0.5 * cone;
+        let inner = (1.0 - self.things.read(made, light::SOFT)) * outer;
+        let power = self.things.read(made, light::COLOR) * self.things.read(made, light::POWER);
+        // Over the cosine the smooth step has the mean ½, so the flux is 2π(1 − (cos inner + cos outer) / 2) times
+        // the intensity. The half angles keep it exact for narrow cones.
+        let height = |angle: f64| {
+            let sine = sin(0.5 * angle);
+            2.0 * sine * sine
+        };
+        let intensity = power / (PI * (height(inner) + height(outer)));
+        self.add_light(thing, Light::Spot { position, direction, intensity, inner, outer });
     }
 
     /// What is left out is not drawn, and still has its place for those that aim at it.
     fn hidden(&mut self, index: usize, thing: &Thing) {
-        if let (true, Ok(Reach::Box(bounds))) = (thing.made.is_sound(), measure(self.things, thing)) {
+        if thing.made.is_sound()
+            && let Ok(Reach::Box(bounds)) = measure(self.things, thing, self.meshes)
+        {
             self.extents[index] = Extent::Lamp(bounds);
         }
     }
 
     fn surface(&mut self, index: usize, thing: &Thing) {
-        let shape = match shape::lower(self.things, thing) {
+        let lowered = match thing.made.kind {
+            schema::mesh::KIND => self.meshes.lower(self.things, thing),
+            _ => shape::lower(self.things, thing),
+        };
+        let shape = match lowered {
             Ok(shape) => shape,
             Err(diagnostic) => return self.report(self.used_at(thing, *diagnostic)),
         };
@@ -250,8 +311,12 @@ impl<'a> Lowering<'a> {
             return self.report(self.used_at(thing, errors::not_finite_place(made.span)));
         }
         self.extents[index] = Extent::Lamp(Bounds { min: position, max: position });
+        if made.given(light::AIM).is_some() {
+            // What it is aimed at may be found only later.
+            return;
+        }
         if radius == 0.0 {
-            let intensity = power / (4.0 * crate::math::PI);
+            let intensity = power / (4.0 * PI);
             return self.add_light(thing, Light::Point { position, intensity });
         }
         let placement = thing.world_from_object * crate::math::DAffine3::from_translation(at);
@@ -260,7 +325,7 @@ impl<'a> Lowering<'a> {
                 if let Some(bounds) = shape.bounds() {
                     self.extents[index] = Extent::Lamp(bounds);
                 }
-                let radiance = power / (crate::math::PI * shape.area());
+                let radiance = power / (PI * shape.area());
                 if !radiance.is_finite() {
                     return self.report(self.used_at(thing, errors::glows_beyond(made.span)));
                 }
@@ -284,7 +349,7 @@ impl<'a> Lowering<'a> {
 
     fn add_light(&mut self, thing: &Thing, light: Light) {
         let finite = match light {
-            Light::Point { intensity, .. } => intensity.is_finite(),
+            Light::Point { intensity, .. } | Light::Spot { intensity, .. } => intensity.is_finite(),
             Light::Sun { irradiance, .. } => irradiance.is_finite(),
             Light::Sky { radiance, .. } => radiance.is_finite(),
         };
@@ -374,7 +439,8 @@ impl<'a> Lowering<'a> {
         let made = blocks.render.map(|thing| thing.made.clone()).unwrap_or_else(|| plain(render::KIND));
         let samples = made.given(render::SAMPLES).map(|(samples, _)| samples as u32);
         let noise = made.given(render::NOISE);
-        self.out.noise = noise.map(|(_, span)| span);
+        self.out.places.noise = noise.map(|(_, span)| span);
+        self.out.places.bounces = made.given(render::BOUNCES).map(|(_, span)| span);
         let target = match (self.overrides.samples.or(samples), noise) {
             (Some(samples), _) => Target::Samples(samples),
             (None, Some((noise, _))) => Target::Noise(noise),
@@ -392,6 +458,7 @@ impl<'a> Lowering<'a> {
             indirect: self.things.read(&made, render::INDIRECT),
             seed: self.overrides.seed.unwrap_or(self.things.read(&made, render::SEED) as u64),
             filter: self.things.read(&made, render::FILTER),
+            background: self.things.read(&made, render::BACKGROUND),
         };
         let tonemap = self.overrides.tonemap.unwrap_or_else(|| self.things.read(&made, render::TONEMAP));
         (trace, tonemap)

@@ -132,7 +132,7 @@ fn quadric(
     Ok(Shape::Quadric(Box::new(quadric)))
 }
 
-fn placed(world_from_object: DAffine3, span: Span) -> Result<Placed, Box<Diagnostic>> {
+pub(super) fn placed(world_from_object: DAffine3, span: Span) -> Result<Placed, Box<Diagnostic>> {
     let object_from_world = invert(world_from_object).ok_or_else(|| Box::new(errors::flattened(span)))?;
     Ok(Placed { world_from_object, object_from_world })
 }

@@ -22,7 +22,7 @@ pub(super) fn png(
     };
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, picture.size[0], picture.size[1]);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(if picture.alpha.is_some() { png::ColorType::Rgba } else { png::ColorType::Rgb });
     encoder.set_depth(bits);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(&bytes));
@@ -44,36 +44,42 @@ pub(super) fn jpeg(picture: &Picture, developing: (f64, Tonemap)) -> Result<Vec<
 pub(super) fn webp(picture: &Picture, developing: (f64, Tonemap)) -> Result<Vec<u8>, CannotEncode> {
     let mut file = Vec::new();
     let [width, height] = picture.size;
+    let color = if picture.alpha.is_some() { ExtendedColorType::Rgba8 } else { ExtendedColorType::Rgb8 };
     image::codecs::webp::WebPEncoder::new_lossless(&mut file)
-        .encode(&eight_bits(picture, developing), width, height, ExtendedColorType::Rgb8)
+        .encode(&eight_bits(picture, developing), width, height, color)
         .map_err(|error| CannotEncode(error.to_string()))?;
     Ok(file)
 }
 
-/// Red, green and blue of each pixel in a byte each.
+/// Red, green, blue and, where there is one, alpha of each pixel in a byte each.
 fn eight_bits(picture: &Picture, developing: (f64, Tonemap)) -> Vec<u8> {
-    developed(picture, developing, |channels| channels.map(|v| [quantise(v, 255) as u8]))
+    developed(picture, developing, |v| [quantise(v, 255) as u8])
 }
 
-/// Red, green and blue of each pixel in two bytes each, the greater first.
+/// Red, green, blue and, where there is one, alpha of each pixel in two bytes each, the greater first.
 fn sixteen_bits(picture: &Picture, developing: (f64, Tonemap)) -> Vec<u8> {
-    developed(picture, developing, |channels| channels.map(|v| quantise(v, 65_535).to_be_bytes()))
+    developed(picture, developing, |v| quantise(v, 65_535).to_be_bytes())
 }
 
 fn developed<const BYTES: usize>(
     picture: &Picture,
     (stops, tonemap): (f64, Tonemap),
-    store: impl Fn([f64; 3]) -> [[u8; BYTES]; 3] + Sync,
+    store: impl Fn(f64) -> [u8; BYTES] + Sync,
 ) -> Vec<u8> {
-    let width = picture.size[0] as usize;
-    let mut bytes = vec![0; picture.pixels.len() * 3 * BYTES];
-    let rows = bytes.par_chunks_mut(width * 3 * BYTES).zip(picture.pixels.par_chunks(width));
-    rows.for_each(|(to, from)| {
-        for (to, pixel) in to.chunks_exact_mut(3 * BYTES).zip(from) {
-            let radiance = Rgb::from_array(pixel.map(f64::from));
-            to.copy_from_slice(store(display(radiance, stops, tonemap).to_array()).as_flattened());
-        }
-    });
+    let channels = if picture.alpha.is_some() { 4 } else { 3 };
+    let mut bytes = vec![0; picture.pixels.len() * channels * BYTES];
+    bytes.par_chunks_exact_mut(channels * BYTES).zip(picture.pixels.par_iter()).enumerate().for_each(
+        |(i, (to, pixel))| {
+            let alpha = picture.alpha.as_ref().map_or(1.0, |alpha| f64::from(alpha[i]));
+            // What covers the pixel is developed by itself, as these formats hold it (unassociated alpha).
+            let whole = if alpha > 0.0 { 1.0 / alpha } else { 1.0 };
+            let radiance = whole * Rgb::from_array(pixel.map(f64::from));
+            let [r, g, b] = display(radiance, stops, tonemap).to_array();
+            for (to, value) in to.chunks_exact_mut(BYTES).zip([r, g, b, alpha]) {
+                to.copy_from_slice(&store(value));
+            }
+        },
+    );
     bytes
 }
 

@@ -10,6 +10,7 @@ mod linear;
 mod openexr;
 
 use crate::color::Rgb;
+use crate::develop::is_burnt_out;
 use crate::scene::Tonemap;
 use rayon::prelude::*;
 use std::fmt;
@@ -29,7 +30,10 @@ pub struct Picture {
     /// Width and height of the whole picture.
     pub whole: [u32; 2],
     /// Linear red, green and blue (sRGB's primaries) in W/(m²·sr), row by row from the top left. Finite.
+    /// Where there is an alpha, of what covers the pixel times its share of it (associated alpha).
     pub pixels: Vec<[f32; 3]>,
+    /// The share of each pixel that is covered, in [0, 1]; none where all of every pixel is.
+    pub alpha: Option<Vec<f32>>,
 }
 
 impl Picture {
@@ -44,7 +48,22 @@ impl Picture {
         let row = |y| (0..size[0]).map(move |x| (offset[0] + x, offset[1] + y));
         let rows = (0..size[1]).into_par_iter().flat_map_iter(row);
         let pixels = rows.map(|(x, y)| radiance(x, y).to_array().map(|v| finite(v as f32))).collect();
-        Picture { size, offset, whole, pixels }
+        Picture { size, offset, whole, pixels, alpha: None }
+    }
+
+    /// The same with the share of each pixel that is covered.
+    pub fn with_alpha(self, alpha: impl Fn(u32, u32) -> f64 + Sync) -> Picture {
+        let Picture { size, offset, .. } = self;
+        let row = |y| (0..size[0]).map(move |x| (offset[0] + x, offset[1] + y));
+        let rows = (0..size[1]).into_par_iter().flat_map_iter(row);
+        let alpha = rows.map(|(x, y)| share(alpha(x, y) as f32)).collect();
+        Picture { alpha: unless_whole(alpha), ..self }
+    }
+
+    /// The share of the pixels that [`is_burnt_out`].
+    pub fn burnt_out(&self, stops: f64, tonemap: Tonemap) -> f64 {
+        let burnt = |pixel: &&[f32; 3]| is_burnt_out(Rgb::from_array(pixel.map(f64::from)), stops, tonemap);
+        self.pixels.iter().filter(burnt).count() as f64 / self.pixels.len().max(1) as f64
     }
 
     /// Rows of pixels from the top.
@@ -56,6 +75,16 @@ impl Picture {
 /// What is not a number is nothing; what is too large is the largest.
 fn finite(v: f32) -> f32 {
     if v.is_nan() { 0.0 } else { v.clamp(f32::MIN, f32::MAX) }
+}
+
+/// The shares of pixels that are covered, unless all of every pixel is.
+fn unless_whole(alpha: Vec<f32>) -> Option<Vec<f32>> {
+    alpha.iter().any(|&share| share < 1.0).then_some(alpha)
+}
+
+/// A share of a whole; what is not a number is none.
+fn share(v: f32) -> f32 {
+    if v.is_nan() { 0.0 } else { v.clamp(0.0, 1.0) }
 }
 
 /// How a picture came about: kept in the attributes of an EXR.
@@ -133,6 +162,17 @@ impl Format {
         matches!(self, Format::Exr | Format::Hdr | Format::Pfm)
     }
 
+    /// Why a transparent picture cannot be held, if it cannot.
+    pub fn refuses_alpha(self) -> Option<CannotEncode> {
+        let name = match self {
+            Format::Png | Format::WebP | Format::Exr => return None,
+            Format::Jpeg => "JPEG",
+            Format::Hdr => "HDR",
+            Format::Pfm => "PFM",
+        };
+        Some(CannotEncode(format!("{name} cannot be transparent; PNG, WebP and EXR can")))
+    }
+
     /// Why a picture of this size cannot be held, if it cannot.
     pub fn refuses(self, size: [u32; 2]) -> Option<CannotEncode> {
         let (name, most) = match self {
@@ -183,7 +223,8 @@ pub fn encode(
     format: Format,
     depth: Depth,
 ) -> Result<Vec<u8>, CannotEncode> {
-    if let Some(reason) = format.refuses(picture.size) {
+    let transparent = picture.alpha.as_ref().and_then(|_| format.refuses_alpha());
+    if let Some(reason) = format.refuses(picture.size).or(transparent) {
         return Err(reason);
     }
     match format {

@@ -1,6 +1,6 @@
 //! OpenEXR: scene radiance in 32-bit floats, with how it came about in the attributes.
 
-use super::{CannotDecode, CannotEncode, Facts, MOST_PIXELS, Picture, finite};
+use super::{CannotDecode, CannotEncode, Facts, MOST_PIXELS, Picture, finite, share, unless_whole};
 use crate::scene::Tonemap;
 use exr::meta::MetaData;
 use exr::meta::attribute::{AttributeValue, Chromaticities, IntegerBounds, LineOrder, Text};
@@ -26,21 +26,32 @@ const SRGB: Chromaticities = Chromaticities {
     white: Vec2(0.3127, 0.329),
 };
 
-/// A file with the channels R, G and B. The display window is the whole picture, the data window what was
+/// A file with the channels R, G, B and, where there is one, A. The display window is the whole picture, the data window what was
 /// traced of it.
 pub(super) fn encode(picture: &Picture, facts: &Facts) -> Result<Vec<u8>, CannotEncode> {
     let position = Vec2(picture.offset[0] as i32, picture.offset[1] as i32);
     let size = Vec2(picture.size[0] as usize, picture.size[1] as usize);
     let whole = Vec2(picture.whole[0] as usize, picture.whole[1] as usize);
-    let pixel = |at: Vec2<usize>| {
-        let [r, g, b] = picture.pixels[at.y() * size.x() + at.x()];
-        (r, g, b)
-    };
+    let index = |at: Vec2<usize>| at.y() * size.x() + at.x();
     let mut image = ImageAttributes::new(IntegerBounds::new((0, 0), whole));
     image.chromaticities = Some(SRGB);
-    let layer = Layer::new(size, attributes(facts, position), ENCODING, SpecificChannels::rgb(pixel));
+    let (image, attributes) = (Image::empty(image), attributes(facts, position));
     let mut file = Cursor::new(Vec::new());
-    let written = Image::empty(image).with_layer(layer).write().to_buffered(&mut file);
+    let written = match &picture.alpha {
+        None => {
+            let pixel = |at| <(f32, f32, f32)>::from(picture.pixels[index(at)]);
+            let layer = Layer::new(size, attributes, ENCODING, SpecificChannels::rgb(pixel));
+            image.with_layer(layer).write().to_buffered(&mut file)
+        }
+        Some(alpha) => {
+            let pixel = |at| {
+                let [r, g, b] = picture.pixels[index(at)];
+                (r, g, b, alpha[index(at)])
+            };
+            let layer = Layer::new(size, attributes, ENCODING, SpecificChannels::rgba(pixel));
+            image.with_layer(layer).write().to_buffered(&mut file)
+        }
+    };
     written.map_err(|error| CannotEncode(error.to_string()))?;
     let mut file = file.into_inner();
     sort_header(&mut file).ok_or_else(|| CannotEncode("the header just written cannot be read".into()))?;
@@ -98,7 +109,7 @@ fn sort_header(file: &mut [u8]) -> Option<()> {
     Some(())
 }
 
-/// Reads the first layer with channels R, G and B, from any program. What is not a number becomes 0, what is
+/// Reads the first layer with channels R, G, B and maybe A, from any program. What is not a number becomes 0, what is
 /// infinite the greatest finite value.
 pub fn decode(file: &[u8]) -> Result<(Picture, Facts), CannotDecode> {
     let refuse = |error: exr::error::Error| CannotDecode(error.to_string());
@@ -114,10 +125,12 @@ pub fn decode(file: &[u8]) -> Result<(Picture, Facts), CannotDecode> {
     let image = read()
         .no_deep_data()
         .largest_resolution_level()
-        .rgb_channels(
-            |size, _| (size.width(), vec![[0.0f32; 3]; size.area()]),
-            |(width, pixels), at, (r, g, b): (f32, f32, f32)| {
-                pixels[at.y() * *width + at.x()] = [r, g, b].map(finite);
+        .rgba_channels(
+            |size, _| (size.width(), vec![[0.0f32; 3]; size.area()], vec![1.0f32; size.area()]),
+            |(width, pixels, alpha), at, (r, g, b, a): (f32, f32, f32, f32)| {
+                let index = at.y() * *width + at.x();
+                pixels[index] = [r, g, b].map(finite);
+                alpha[index] = share(a);
             },
         )
         .first_valid_layer()
@@ -126,12 +139,14 @@ pub fn decode(file: &[u8]) -> Result<(Picture, Facts), CannotDecode> {
         .map_err(refuse)?;
     let layer = image.layer_data;
     let display = image.attributes.display_window;
+    let (_, pixels, alpha) = layer.channel_data.pixels;
     let offset = layer.attributes.layer_position - display.position;
     let picture = Picture {
         size: [layer.size.x() as u32, layer.size.y() as u32],
         offset: [offset.x().max(0) as u32, offset.y().max(0) as u32],
         whole: [display.size.x() as u32, display.size.y() as u32],
-        pixels: layer.channel_data.pixels.1,
+        pixels,
+        alpha: unless_whole(alpha),
     };
     Ok((picture, facts(&layer.attributes)))
 }

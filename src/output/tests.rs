@@ -29,6 +29,33 @@ fn read_png(file: &[u8]) -> (png::OutputInfo, Vec<u8>) {
 }
 
 #[test]
+fn what_is_transparent_stays_so() {
+    let open = sample().with_alpha(|x, y| f64::from(x + y) / 60.0);
+    let file = encode(&open, &facts(), Format::Exr, Depth::Eight).unwrap();
+    assert_eq!(decode_exr(&file), Ok((open.clone(), facts())));
+    for depth in [Depth::Eight, Depth::Sixteen] {
+        let (info, bytes) = read_png(&encode(&open, &facts(), Format::Png, depth).unwrap());
+        assert_eq!(info.color_type, png::ColorType::Rgba);
+        let step = if depth == Depth::Eight { 4 } else { 8 };
+        // The first pixel's share is 12 of 60.
+        assert_eq!(bytes[step - step / 4], 51);
+        // Its colour is that of what covers it, which is five times as bright as the pixel.
+        let mut bright = sample();
+        bright.pixels.iter_mut().for_each(|pixel| *pixel = pixel.map(|v| v * 5.0));
+        let (_, whole) = read_png(&encode(&bright, &facts(), Format::Png, depth).unwrap());
+        assert_eq!(bytes[..step - step / 4], whole[..step - step / 4]);
+    }
+    let webp = encode(&open, &facts(), Format::WebP, Depth::Eight).unwrap();
+    let webp = image::load_from_memory_with_format(&webp, image::ImageFormat::WebP).unwrap();
+    assert_eq!((webp.color(), webp.to_rgba8()[(0, 0)].0[3]), (image::ColorType::Rgba8, 51));
+    for format in [Format::Jpeg, Format::Hdr, Format::Pfm] {
+        assert!(format.refuses_alpha().is_some() && encode(&open, &facts(), format, Depth::Eight).is_err());
+    }
+    // Where all is covered there is nothing to say.
+    assert_eq!(sample().with_alpha(|_, _| 1.0), sample());
+}
+
+#[test]
 fn an_exr_keeps_every_bit_and_all_facts() {
     let file = encode(&sample(), &facts(), Format::Exr, Depth::Eight).unwrap();
     assert_eq!(decode_exr(&file), Ok((sample(), facts())));
@@ -81,7 +108,7 @@ fn hdr_is_near_and_extremes_are_cut() {
     let values = [1e-45, 1e-38, 3e-38, 1e-3, 0.998, 0.999, 1.0, 1.5, 255.5, 1e6, 1.6e38, f32::MAX, 0.0, -3.0];
     let pixels: Vec<[f32; 3]> = values.iter().map(|&v| [v, v * 0.5, 0.0]).collect();
     let size = [values.len() as u32, 1];
-    let picture = Picture { size, offset: [0, 0], whole: size, pixels };
+    let picture = Picture { size, offset: [0, 0], whole: size, pixels, alpha: None };
     let file = encode(&picture, &facts(), Format::Hdr, Depth::Eight).unwrap();
     let read = image::load_from_memory_with_format(&file, image::ImageFormat::Hdr).unwrap().into_rgb32f();
     for (pixel, &value) in read.pixels().zip(&values) {

@@ -4,7 +4,7 @@ use super::sampler::{Pair, Sampler};
 use super::shape::Ray;
 use super::warp;
 use crate::math::{DVec2, exp};
-use crate::scene::{Camera, Filter, Scene};
+use crate::scene::{Camera, Filter, Projection, Scene};
 
 /// Makes the rays of camera paths.
 pub struct Eye<'s> {
@@ -33,7 +33,11 @@ impl<'s> Eye<'s> {
     pub fn through(&self, share: DVec2, sampler: &Sampler) -> Ray {
         let camera = self.camera;
         let extent = share * camera.half_extent;
-        let pinhole = camera.forward + extent.x * camera.right - extent.y * camera.up;
+        let across = extent.x * camera.right - extent.y * camera.up;
+        if camera.projection == Projection::Orthographic {
+            return Ray { origin: camera.position + across, direction: camera.forward, start: None };
+        }
+        let pinhole = camera.forward + across;
         if camera.lens_radius == 0.0 {
             return Ray { origin: camera.position, direction: pinhole.normalize(), start: None };
         }

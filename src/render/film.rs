@@ -14,6 +14,9 @@ pub const MOST_SAMPLES: u32 = 1 << 20;
 /// fits an `i64`, and `MOST_SAMPLES` times its square fits a `u128`.
 const MOST_FIXED: f64 = (1u64 << 42) as f64;
 
+/// Units of the fixed point in a filter weight of 1: `MOST_SAMPLES` weights of less than 8 fit an `i64`.
+const WEIGHT_SCALE: f64 = (1u64 << 40) as f64;
+
 /// A rectangle of pixels in the full picture, (0, 0) at its top left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
@@ -63,6 +66,10 @@ impl Window {
 pub struct Pixel {
     sum: [i64; 3],
     luminance_squares: u128,
+    /// Sums of the filter weights of samples that met something, and of those that met nothing in front of a
+    /// transparent background.
+    covered: i64,
+    open: i64,
     samples: u32,
 }
 
@@ -82,13 +89,34 @@ impl Pixel {
         self.samples += 1;
     }
 
+    /// Adds the weight of a sample to what is covered, or to what is open to a transparent background.
+    pub fn cover(&mut self, open: bool, weight: f64) {
+        let sum = if open { &mut self.open } else { &mut self.covered };
+        *sum += (weight * WEIGHT_SCALE).round() as i64;
+    }
+
     /// Adds the samples of another.
     pub fn merge(&mut self, other: &Pixel) {
         for (sum, v) in self.sum.iter_mut().zip(other.sum) {
             *sum += v;
         }
         self.luminance_squares += other.luminance_squares;
+        self.covered += other.covered;
+        self.open += other.open;
         self.samples += other.samples;
+    }
+
+    /// By the weights of the very samples there are, so that it is exactly 1 or 0 where all of them agree. A filter
+    /// with negative weights may lead beyond these, and is cut.
+    fn alpha(&self) -> f64 {
+        match (self.covered, self.open) {
+            (_, 0) => 1.0,
+            (0, _) => 0.0,
+            (covered, open) => {
+                let share = covered as f64 / (covered as f64 + open as f64);
+                if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) }
+            }
+        }
     }
 
     fn mean(&self, scale: f64) -> Rgb {
@@ -134,6 +162,12 @@ impl Film {
     /// Mean radiance of a pixel of the full picture, in W/(m²·sr).
     pub fn mean(&self, x: u32, y: u32) -> Rgb {
         self.pixel(x, y).mean(self.scale)
+    }
+
+    /// The share of a pixel that is covered, in [0, 1]: below 1 only in front of a transparent background. The mean
+    /// radiance is that of the whole pixel, so it is multiplied by this already.
+    pub fn alpha(&self, x: u32, y: u32) -> f64 {
+        self.pixel(x, y).alpha()
     }
 
     /// Standard error of the mean's luminance in W/(m²·sr), as if samples were independent (stratified ones do

@@ -15,7 +15,7 @@ use super::sampler::{Pair, Sampler};
 use super::shape::{Place, Ray, SurfacePoint, surface_point};
 use crate::color::Rgb;
 use crate::math::{DVec3, basis};
-use crate::scene::Material;
+use crate::scene::{Background, Material};
 
 /// Vertices before roulette may end a path. It was measured to cost more than it saves at depth 8.
 const FIRST_ROULETTE: u32 = 16;
@@ -55,17 +55,26 @@ struct Last {
     pdf: f64,
 }
 
-/// The radiance along a camera ray. `inside` is scratch space.
-pub(super) fn radiance<O: Observer>(
+/// What a camera path brings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Arrived {
+    /// Radiance along the camera ray.
+    pub radiance: Rgb,
+    /// Whether the ray met nothing in front of a transparent background.
+    pub open: bool,
+}
+
+/// What arrives along a camera ray. `inside` is scratch space.
+pub(super) fn trace<O: Observer>(
     tracer: &Tracer,
     ray: Ray,
     sampler: &Sampler,
     inside: &mut Scratch,
     observer: &mut O,
-) -> Rgb {
+) -> Arrived {
     let Scratch { path: inside, shadow } = inside;
     let trace = &tracer.scene.trace;
-    tracer.dielectrics.enter_at(&ray, inside);
+    tracer.dielectrics.enter_at(&tracer.accel, &ray, inside);
     let mut path = Path {
         ray,
         throughput: Rgb::ONE,
@@ -84,6 +93,11 @@ pub(super) fn radiance<O: Observer>(
 
         // Account for the sky and the suns if the ray leaves the scene.
         let Some(hit) = hit else {
+            // What dims or bends the ray on its way is seen, and so is the background through it.
+            if trace.background == Background::Transparent && path.bounces == 0 && path.throughput == Rgb::ONE
+            {
+                return Arrived { radiance: Rgb::ZERO, open: true };
+            }
             for (source, radiance) in tracer.lights.beyond(path.ray.direction) {
                 path.find(tracer, source, radiance, None);
             }
@@ -138,6 +152,9 @@ pub(super) fn radiance<O: Observer>(
         let Some(sample) = bsdf.sample(vertex.wo, lobe, sampler.pair(Pair::Direction(path.bounces))) else {
             break;
         };
+        if !vertex.agrees(sample.wi, vertex.world(sample.wi)) {
+            break;
+        }
         path.scatter(&vertex, &sample, &point);
         if path.throughput == Rgb::ZERO {
             break;
@@ -158,7 +175,7 @@ pub(super) fn radiance<O: Observer>(
             path.throughput /= survival;
         }
     }
-    path.radiance
+    Arrived { radiance: path.radiance, open: false }
 }
 
 /// Memory that paths use one after the other.
@@ -169,13 +186,18 @@ pub(super) struct Scratch {
 }
 
 /// A vertex with its local frame.
+///
+/// Scattering is that of the shading normal, and which side a direction is on is told by the surface's own: what the
+/// two disagree about is black, so that no light leaks through a smooth mesh (Veach 1997, §5.3.2).
 struct LocalVertex {
     place: Place,
     p: DVec3,
     x: DVec3,
     y: DVec3,
-    /// The normal on the side that the path comes from.
+    /// The normal to shade with, on the side that the path comes from.
     z: DVec3,
+    /// The normal of the surface itself, on that side; none where it is the same.
+    rim: Option<DVec3>,
     wo: DVec3,
     /// Whether the path comes from outside.
     entering: bool,
@@ -183,9 +205,11 @@ struct LocalVertex {
 
 impl LocalVertex {
     fn new(point: &SurfacePoint, place: Place, entering: bool, direction: DVec3) -> LocalVertex {
-        let z = if entering { point.n } else { -point.n };
+        let [n, shading] = [point.n, point.shading].map(|n| if entering { n } else { -n });
+        let rim = (shading != n).then_some(n);
+        let z = if rim.is_some() { raised(shading, n, -direction) } else { n };
         let (x, y) = basis(z);
-        let mut vertex = LocalVertex { place, p: point.p, x, y, z, wo: DVec3::ZERO, entering };
+        let mut vertex = LocalVertex { place, p: point.p, x, y, z, rim, wo: DVec3::ZERO, entering };
         vertex.wo = vertex.local(-direction);
         vertex.wo.z = vertex.wo.z.max(LEAST_COSINE);
         vertex
@@ -199,9 +223,29 @@ impl LocalVertex {
         w.x * self.x + w.y * self.y + w.z * self.z
     }
 
+    /// Whether a direction of the world is on the side of the surface that it is on of the shading normal.
+    fn agrees(&self, local: DVec3, w: DVec3) -> bool {
+        self.rim.is_none_or(|n| (local.z > 0.0) == (n.dot(w) > 0.0))
+    }
+
     fn ray(&self, direction: DVec3) -> Ray {
         Ray { origin: self.p, direction, start: Some(self.place) }
     }
+}
+
+/// A shading normal, turned just so far towards the surface's own that the mirror image of `wo` is above the surface
+/// (Keller et al., "The Iray light transport simulation and rendering system", 2017, appendix A.3).
+fn raised(shading: DVec3, n: DVec3, wo: DVec3) -> DVec3 {
+    /// The least cosine of the mirror image to the surface's normal.
+    const LEAST: f64 = 1e-4;
+    let mirrored = 2.0 * wo.dot(shading) * shading - wo;
+    let height = mirrored.dot(n);
+    if height >= LEAST && wo.dot(shading) > 0.0 {
+        return shading;
+    }
+    let lifted = (mirrored + (LEAST - height).max(0.0) * n).normalize();
+    let raised = (wo + lifted).normalize_or(n);
+    if raised.dot(n) > 0.0 { raised } else { n }
 }
 
 impl<O: Observer> Path<'_, O> {
@@ -245,6 +289,9 @@ impl<O: Observer> Path<'_, O> {
             return;
         };
         let wi = vertex.local(light.wi);
+        if !vertex.agrees(wi, light.wi) {
+            return;
+        }
         let scattering = bsdf.eval(vertex.wo, wi);
         if scattering == Rgb::ZERO {
             return;

@@ -88,6 +88,11 @@ enum Kind {
     Point {
         position: DVec3,
     },
+    /// The radiance is the intensity on the axis.
+    Spot {
+        position: DVec3,
+        cone: Cone,
+    },
     /// The radiance is that of the disc, or without a disc the irradiance.
     Sun {
         direction: DVec3,
@@ -101,6 +106,26 @@ enum Kind {
         radius: f64,
     },
     Surface(Box<Glowing>),
+}
+
+/// Where a spot shines: the axis, and 1 − cosine of the angles where its light is whole and where it ends, which
+/// stay exact for narrow cones.
+struct Cone {
+    direction: DVec3,
+    inner: f64,
+    outer: f64,
+}
+
+impl Cone {
+    /// The share of the intensity on the axis that goes in a direction: see [`Light::Spot`].
+    fn share(&self, w: DVec3) -> f64 {
+        let height = 0.5 * self.direction.distance_squared(w);
+        if height <= self.inner {
+            return 1.0;
+        }
+        let x = ((self.outer - height) / (self.outer - self.inner)).max(0.0);
+        x * x * (3.0 - 2.0 * x)
+    }
 }
 
 /// What the uniform share in choosing a light is. It bounds the noise where the estimates are far off.
@@ -203,6 +228,13 @@ impl Lamp {
     fn from_light(scene: &Scene, source: Source, light: &Light) -> Lamp {
         let (radiance, kind) = match *light {
             Light::Point { position, intensity } => (intensity, Kind::Point { position }),
+            Light::Spot { position, direction, intensity, inner, outer } => {
+                let [inner, outer] = [inner, outer].map(|angle| {
+                    let sine = crate::math::sin(0.5 * angle);
+                    2.0 * sine * sine
+                });
+                (intensity, Kind::Spot { position, cone: Cone { direction, inner, outer } })
+            }
             Light::Sun { direction, irradiance, radius } => {
                 let sine = crate::math::sin(radius);
                 let radiance = if sine > 0.0 { irradiance / (PI * sine * sine) } else { irradiance };
@@ -244,6 +276,12 @@ impl Lamp {
                 let to = *position - receiver.p;
                 let squared = to.length_squared().max(f64::MIN_POSITIVE);
                 strength / squared * cosine_bound(receiver, to / squared.sqrt(), 0.0)
+            }
+            Kind::Spot { position, cone } => {
+                let to = *position - receiver.p;
+                let squared = to.length_squared().max(f64::MIN_POSITIVE);
+                let wi = to / squared.sqrt();
+                strength * cone.share(-wi) / squared * cosine_bound(receiver, wi, 0.0)
             }
             Kind::Sun { direction, sine } => {
                 let solid_angle = if *sine > 0.0 { PI * sine * sine } else { 1.0 };
@@ -291,6 +329,14 @@ impl Lamp {
                 let distance = squared.sqrt();
                 (squared > 0.0).then(|| delta(to / distance, distance, self.radiance / squared))
             }
+            Kind::Spot { position, cone } => {
+                let to = *position - receiver.p;
+                let squared = to.length_squared();
+                let distance = squared.sqrt();
+                let wi = to / distance;
+                let share = cone.share(-wi);
+                (share > 0.0).then(|| delta(wi, distance, self.radiance * (share / squared)))
+            }
             Kind::Sun { direction, sine } if *sine == 0.0 => {
                 Some(delta(*direction, f64::INFINITY, self.radiance))
             }
@@ -324,7 +370,7 @@ impl Lamp {
                 let distance = (d - radius) * (d + radius) / (d * local.z + half_chord);
                 let place = Place { primitive: *id, face: Face::Side };
                 let p = receiver.p + distance * wi;
-                let point = SurfacePoint { p, n: (p - *center) / *radius };
+                let point = SurfacePoint::new(p, (p - *center) / *radius);
                 let target = Target { point, place, hides_itself: false };
                 Some(LightSample {
                     wi,
@@ -342,7 +388,7 @@ impl Lamp {
     /// Density of [`Lamp::sample`] in solid angle.
     fn pdf(&self, receiver: &Receiver, wi: DVec3, point: Option<(&SurfacePoint, Face)>) -> f64 {
         match &self.kind {
-            Kind::Point { .. } => 0.0,
+            Kind::Point { .. } | Kind::Spot { .. } => 0.0,
             Kind::Sun { sine, .. } if *sine == 0.0 => 0.0,
             Kind::Sun { sine, .. } => warp::cone_pdf(cone_height(*sine)),
             Kind::Panorama(sky) => sky.pdf(wi),

@@ -10,10 +10,11 @@
 
 use crate::color::Rgb;
 use crate::math::exp;
+use crate::render::accel::Accel;
 use crate::render::shape::Ray;
 use crate::scene::nesting::lies_in;
 use crate::scene::shape::Bounds;
-use crate::scene::{Material, PrimitiveId, Scene, Shape};
+use crate::scene::{Material, PrimitiveId, Projection, Scene, Shape};
 
 /// The dielectric solids of a scene.
 pub struct Dielectrics<'s> {
@@ -51,11 +52,11 @@ impl<'s> Dielectrics<'s> {
     }
 
     /// Sets `inside` to the solids around the start of a camera ray.
-    pub fn enter_at(&self, ray: &Ray, inside: &mut Inside) {
+    pub fn enter_at(&self, accel: &Accel, ray: &Ray, inside: &mut Inside) {
         inside.solids.clear();
         inside.medium = None;
         for &id in &self.near_camera {
-            if self.shape(id).contains(ray.origin) {
+            if accel.contains(id, ray.origin) {
                 self.cross(inside, id, true);
             }
         }
@@ -137,8 +138,12 @@ fn ior(scene: &Scene, id: PrimitiveId) -> Option<f64> {
 
 fn may_reach_lens(scene: &Scene, id: PrimitiveId) -> bool {
     let camera = &scene.camera;
-    let lens =
-        Bounds { min: camera.position - camera.lens_radius, max: camera.position + camera.lens_radius };
+    // Filters reach two pixels beyond the edge of the picture, which is one pixel wide at least.
+    let reach = match camera.projection {
+        Projection::Perspective => camera.lens_radius,
+        Projection::Orthographic => 5.0 * camera.half_extent.length(),
+    };
+    let lens = Bounds { min: camera.position - reach, max: camera.position + reach };
     scene.primitives[id.0 as usize]
         .shape
         .bounds()

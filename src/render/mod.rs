@@ -7,7 +7,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`shape`] | where a ray meets a surface, without epsilons |
-//! | `accel` | which surface it meets first |
+//! | `accel`, `bvh` | which surface it meets first |
 //! | `camera`, [`sampler`], `warp` | rays of camera paths; random numbers; directions drawn from them |
 //! | [`texture`] | what colour they have at a point |
 //! | [`bsdf`] | how surfaces scatter light |
@@ -24,6 +24,7 @@
 
 mod accel;
 pub mod bsdf;
+mod bvh;
 mod camera;
 pub mod control;
 pub mod film;
@@ -47,7 +48,7 @@ use camera::Eye;
 pub use control::{Cancelled, Control, Progress};
 pub use film::{Film, Window};
 use film::{MOST_SAMPLES, Pixel};
-use integrator::{Scratch, Sharing};
+use integrator::{Arrived, Scratch, Sharing};
 use light::Lights;
 use media::{Boundary, Dielectrics, Inside};
 pub use observer::Observer;
@@ -80,6 +81,17 @@ pub struct Rendered {
     pub noise: f64,
     /// Whether the target was met: false only where a noise target was not, with [`MOST_NOISE_SAMPLES`].
     pub target_met: bool,
+}
+
+/// About how many bytes it takes to trace the whole of a scene: its surfaces, the hierarchy over them while it is
+/// built, the film, and the picture that is made of it.
+pub fn memory(scene: &Scene) -> u64 {
+    let surfaces = scene.primitives.len() as u64;
+    let surface = (size_of::<crate::scene::Primitive>() + bvh::BYTES_A_SURFACE) as u64;
+    // A pass over the picture is held beside the sums that it is added to.
+    let pixel = (2 * size_of::<Pixel>() + size_of::<Rgb>()) as u64;
+    let [width, height] = scene.trace.size.map(u64::from);
+    surfaces * surface + width * height * pixel
 }
 
 /// How the film will be shown, which is what a noise target speaks of.
@@ -186,7 +198,8 @@ impl<'s> Tracer<'s> {
 
     /// The radiance that one sample adds to its pixel, watched.
     pub fn sample<O: Observer>(&self, x: u32, y: u32, sample: u32, observer: &mut O) -> Rgb {
-        self.trace_sample(x, y, sample, &mut Scratch::default(), observer)
+        let (arrived, weight) = self.trace_sample(x, y, sample, &mut Scratch::default(), observer);
+        weight * arrived.radiance
     }
 
     fn trace_tile<O: Observer>(
@@ -206,7 +219,9 @@ impl<'s> Tracer<'s> {
                     if control.is_cancelled() {
                         return Err(Cancelled);
                     }
-                    pixel.add(self.trace_sample(x, y, sample, &mut scratch, observer), scale);
+                    let (arrived, weight) = self.trace_sample(x, y, sample, &mut scratch, observer);
+                    pixel.add(weight * arrived.radiance, scale);
+                    pixel.cover(arrived.open, weight);
                 }
                 pixels.push(pixel);
             }
@@ -215,6 +230,7 @@ impl<'s> Tracer<'s> {
         Ok(pixels)
     }
 
+    /// What a sample brings, and its weight in its pixel.
     fn trace_sample<O: Observer>(
         &self,
         x: u32,
@@ -222,11 +238,11 @@ impl<'s> Tracer<'s> {
         sample: u32,
         scratch: &mut Scratch,
         observer: &mut O,
-    ) -> Rgb {
+    ) -> (Arrived, f64) {
         let trace = &self.scene.trace;
         let sampler = Sampler::new(trace.seed, x, y, sample);
         let (ray, weight) = self.eye.ray(x, y, trace.size, &sampler);
-        weight * integrator::radiance(self, ray, &sampler, scratch, observer)
+        (integrator::trace(self, ray, &sampler, scratch, observer), weight)
     }
 
     /// What a surface does at a point, or none where it does nothing.
@@ -283,8 +299,7 @@ impl<'s> Tracer<'s> {
     /// Whether a ray meets the surface that it starts on again, below a distance.
     fn meets(&self, ray: &Ray, distance: f64) -> bool {
         ray.start.is_some_and(|start| {
-            let shape = &self.scene.primitives[start.primitive.0 as usize].shape;
-            shape::intersect(shape, ray, Some(start.face)).is_some_and(|(t, _)| t < distance)
+            self.accel.intersect(start.primitive, ray, Some(start.face)).is_some_and(|(t, _)| t < distance)
         })
     }
 

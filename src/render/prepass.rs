@@ -3,7 +3,9 @@
 //! It depends on nothing but what the picture shows: not on its size, window, seed or samples.
 
 use super::integrator::Scratch;
+use super::observer::Observer;
 use super::sampler::Sampler;
+use super::shape::Place;
 use super::{Tracer, film, integrator};
 use crate::color::{Rgb, luminance};
 use crate::math::{DVec2, exp, ln};
@@ -17,6 +19,19 @@ pub struct Prepass {
     pub exposure_stops: f64,
     /// Fixed-point units in radiance 1: the film's scale, a power of two.
     pub scale: f64,
+    /// About the share of the picture's mean radiance that is lost because paths end at the limit of bounces: the
+    /// mean throughput of such paths, as if they ended at what the picture shows on average.
+    pub cut: f64,
+}
+
+/// What paths still carried when the limit of bounces ended them.
+#[derive(Default)]
+struct Cut(f64);
+
+impl Observer for Cut {
+    fn cut(&mut self, _: Place, throughput: Rgb) {
+        self.0 += luminance(throughput);
+    }
 }
 
 /// Cells across and down, and paths in each.
@@ -30,27 +45,31 @@ const MIDDLE: f64 = 0.18;
 const BRIGHT: f64 = 0.9;
 
 pub(super) fn prepass(tracer: &Tracer) -> Prepass {
-    let mut cells: Vec<f64> =
-        (0..CELLS * CELLS).into_par_iter().map(|cell| luminance(cell_mean(tracer, cell))).collect();
+    let cells: Vec<(Rgb, f64)> = (0..CELLS * CELLS).into_par_iter().map(|cell| look(tracer, cell)).collect();
+    let cut = cells.iter().map(|(_, cut)| cut).sum::<f64>() / f64::from(CELLS * CELLS * PATHS);
+    let mut cells: Vec<f64> = cells.iter().map(|(mean, _)| luminance(*mean)).collect();
     cells.sort_unstable_by(f64::total_cmp);
     let typical = log_mean(&cells);
     let bright = cells[cells.len() * 95 / 100].max(typical);
-    Prepass { exposure_stops: exposure(typical, bright), scale: film::scale_for(typical, tracer.peak()) }
+    let scale = film::scale_for(typical, tracer.peak());
+    Prepass { exposure_stops: exposure(typical, bright), scale, cut }
 }
 
-fn cell_mean(tracer: &Tracer, cell: u32) -> Rgb {
+/// The mean radiance of a cell, and what its paths still carried where they were cut.
+fn look(tracer: &Tracer, cell: u32) -> (Rgb, f64) {
     let (x, y) = (cell % CELLS, cell / CELLS);
     let mut scratch = Scratch::default();
+    let mut cut = Cut::default();
     let sum: Rgb = (0..PATHS)
         .map(|path| {
             let sampler = Sampler::new(SEED, x, y, path);
             let [u, v] = sampler.pair(super::sampler::Pair::Film);
             let place = DVec2::new(f64::from(x) + u, f64::from(y) + v) / f64::from(CELLS);
             let ray = tracer.eye.through(2.0 * place - 1.0, &sampler);
-            integrator::radiance(tracer, ray, &sampler, &mut scratch, &mut ())
+            integrator::trace(tracer, ray, &sampler, &mut scratch, &mut cut).radiance
         })
         .sum();
-    sum / f64::from(PATHS)
+    (sum / f64::from(PATHS), cut.0)
 }
 
 /// The geometric mean of what is not black, each raised to a thousandth of the mean at least: noise in the

@@ -1,7 +1,7 @@
 //! Colour by place: what a texture shows at a point of a surface.
 
 use super::sampler::mix;
-use super::shape::{Face, SurfacePoint};
+use super::shape::{Face, SurfacePoint, mesh_uv};
 use crate::asset::Image;
 use crate::color::Rgb;
 use crate::math::{DVec2, DVec3, PI, atan2};
@@ -45,9 +45,9 @@ impl<'s> Spot<'s> {
             face,
             point,
             o: frame.transform_point3(point.p),
-            inwards: -(frame.matrix3 * point.n).normalize(),
+            inwards: -(frame.matrix3 * point.n).normalize_or_zero(),
             // Normals go by the inverse transpose, and the frame leads from the world.
-            n: (frame.matrix3.inverse().transpose() * point.n).normalize(),
+            n: (frame.matrix3.inverse().transpose() * point.n).normalize_or(DVec3::Y),
         }
     }
 
@@ -60,8 +60,17 @@ impl<'s> Spot<'s> {
     fn place(&self, size: DVec2) -> Place {
         match (&self.primitive.shape, self.face) {
             (Shape::Sphere { .. }, _) => globe(self.o),
+            (Shape::Mesh(instance), face) => match (face, &self.point.p) {
+                (Face::Triangle(triangle), p) => match mesh_uv(instance, triangle, *p) {
+                    Some(uv) => Place { uv, repeats_up: true },
+                    None => flat(self.o, self.n, size),
+                },
+                _ => flat(self.o, self.n, size),
+            },
             (Shape::Plane { .. } | Shape::Disk(_) | Shape::Box(_), _)
-            | (Shape::Quadric(_), Face::Low | Face::High | Face::Wall(_)) => flat(self.o, self.n, size),
+            | (Shape::Quadric(_), Face::Low | Face::High | Face::Wall(_) | Face::Triangle(_)) => {
+                flat(self.o, self.n, size)
+            }
             (Shape::Quadric(quadric), Face::Side) => {
                 let canonical = quadric.object_from_world.transform_point3(self.point.p);
                 match quadric.form {
@@ -82,9 +91,12 @@ fn globe(o: DVec3) -> Place {
 /// Once around the axis, as on a globe. Between its ends a picture covers the whole height; without an end copies
 /// follow each other, one standing about the origin.
 fn around(quadric: &Quadric, canonical: DVec3, o: DVec3, size: DVec2) -> Place {
-    let height = quadric.high - quadric.low;
-    let repeats_up = height == f64::INFINITY;
-    let v = if repeats_up { 0.5 + o.y / size.y } else { (canonical.y - quadric.low) / height };
+    let stretches = quadric.stretches();
+    let covered = || stretches.iter().filter(|[low, high]| low < high);
+    let low = covered().map(|[low, _]| *low).fold(f64::INFINITY, f64::min);
+    let high = covered().map(|[_, high]| *high).fold(f64::NEG_INFINITY, f64::max);
+    let repeats_up = high - low == f64::INFINITY;
+    let v = if repeats_up { 0.5 + o.y / size.y } else { (canonical.y - low) / (high - low) };
     Place { uv: DVec2::new(longitude(canonical), v), repeats_up }
 }
 
@@ -150,7 +162,8 @@ pub(super) fn clouds(p: DVec3, octaves: u32, seed: u64) -> f64 {
         frequency *= 2.0;
     }
     // What is not a number, far outside, counts as low.
-    (0.5 + CONTRAST * sum / f64::sqrt(squares)).max(0.0).min(1.0)
+    let t = 0.5 + CONTRAST * sum / f64::sqrt(squares);
+    if t.is_nan() { 0.0 } else { t.clamp(0.0, 1.0) }
 }
 
 /// Gradient noise in about [−1, 1], 0 at the corners of the unit lattice (Ken Perlin, "Improving noise", 2002), with
@@ -183,6 +196,8 @@ fn gradient(hash: u64) -> DVec3 {
 
 /// A picture between its pixels. It repeats to the sides; above and below too, or else goes on as its edge.
 pub(super) fn bilinear(image: &Image, uv: DVec2, repeats_up: bool) -> Rgb {
+    // So far out that the place is no number, any will do.
+    let uv = if uv.is_finite() { uv } else { DVec2::ZERO };
     let (width, height) = (f64::from(image.width()), f64::from(image.height()));
     let (x, y) = (uv.x * width - 0.5, (1.0 - uv.y) * height - 0.5);
     let column = |x: f64| x.floor().rem_euclid(width).min(width - 1.0) as u32;

@@ -159,3 +159,40 @@ fn a_flood_is_cut_and_errors_come_through() {
     assert!(text.contains("at 950;") && text.contains("at 0;") && !text.contains("at 100;"), "{text}");
     assert!(text.ends_with("… and 851 more\n1 error, 900 warnings in stool.rt\n"), "{text}");
 }
+
+#[test]
+fn a_chain_of_uses_is_shown_outermost_first_and_its_middle_is_left_out() {
+    let text = "group a {\n  group b {\n    sphere {}\n  }\n}\n";
+    let (sources, id) = sources(text);
+    let at = |part: &str| {
+        let start = text.find(part).unwrap();
+        Span::new(id, start, start + part.len())
+    };
+    let mut diagnostic = Diagnostic::new(Code::E0302, "`sphere` needs `radius`", at("sphere"));
+    diagnostic.uses = vec![at("group a"), at("group b")];
+    let shown = human(&diagnostic, &sources, PLAIN);
+    assert!(shown.ends_with("  in `group a`, stool.rt:1:1\n  in `group b`, stool.rt:2:3\n"), "{shown}");
+
+    diagnostic.uses = (0..100).map(|n| [at("group a"), at("group b")][n % 2]).collect();
+    let shown = human(&diagnostic, &sources, PLAIN);
+    assert_eq!(shown.matches("  in `group").count(), 7, "{shown}");
+    assert!(
+        shown.contains("  … 93 more levels\n") && shown.contains("  in `group a`, stool.rt:1:1\n"),
+        "{shown}"
+    );
+
+    diagnostic.uses = vec![at("group b"); 1_000_000];
+    let shown = human(&diagnostic, &sources, PLAIN);
+    assert!(shown.ends_with("  in `group b`, stool.rt:2:3, 1000000 levels\n"), "{shown}");
+}
+
+#[test]
+fn the_same_slip_with_many_values_is_shown_a_few_times() {
+    let (sources, id) = sources("sphere {}\n");
+    let at = |n: usize| Diagnostic::new(Code::E0401, format!("this is {n}"), Span::new(id, 0, 6));
+    let many: Vec<Diagnostic> = (0..1000).map(at).collect();
+    let text = all(&many, &sources, PLAIN);
+    assert!(text.contains("this is 0") && !text.contains("this is 9\n"), "{text}");
+    assert!(text.contains("… 997 more of E0401 at stool.rt:1:1"), "{text}");
+    assert!(text.ends_with("1000 errors in stool.rt\n"), "{text}");
+}

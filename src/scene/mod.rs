@@ -17,7 +17,7 @@ pub mod texture;
 pub use crate::asset::Image;
 use crate::color::Rgb;
 use crate::math::{DAffine3, DMat3, DVec2, DVec3};
-pub use crate::schema::{Filter, Tonemap};
+pub use crate::schema::{Background, Filter, Tonemap};
 use serde::Serialize;
 pub use shape::Shape;
 use std::sync::Arc;
@@ -130,6 +130,21 @@ pub enum Light {
         /// Radiant intensity in W/sr a channel.
         intensity: Rgb,
     },
+    /// Radiates from a point into a cone. With c the cosine of the angle to the axis, the intensity is whole where c
+    /// is at least cos `inner`, 0 where it is below cos `outer`, and between the two it follows the smooth step
+    /// x²(3 − 2x) of x = (c − cos `outer`) / (cos `inner` − cos `outer`).
+    Spot {
+        /// Where.
+        position: DVec3,
+        /// Unit vector along the axis.
+        direction: DVec3,
+        /// Radiant intensity on the axis, in W/sr a channel.
+        intensity: Rgb,
+        /// Angle to the axis in radians up to which it is whole, in [0, `outer`].
+        inner: f64,
+        /// Angle to the axis in radians beyond which there is none, in (0, π].
+        outer: f64,
+    },
     /// A distant disc.
     Sun {
         /// Unit vector towards the centre of the disc.
@@ -158,11 +173,13 @@ pub struct Panorama {
     pub image_from_world: DMat3,
 }
 
-/// A perspective camera with a thin lens. `right`, `up` and `forward` are unit vectors at right angles, with
+/// A camera. `right`, `up` and `forward` are unit vectors at right angles, with
 /// right × up = −forward.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Camera {
-    /// Centre of the lens.
+    /// Whether rays meet in the lens or are parallel.
+    pub projection: Projection,
+    /// Centre of the lens; of an orthographic camera, of the window that rays start in.
     pub position: DVec3,
     /// To the right in the picture.
     pub right: DVec3,
@@ -170,12 +187,22 @@ pub struct Camera {
     pub up: DVec3,
     /// Into the picture.
     pub forward: DVec3,
-    /// Half the width and half the height of the picture at distance 1: tangents of the half angles of view.
+    /// Half the width and half the height of the picture. In perspective at distance 1: tangents of the half angles
+    /// of view. Of an orthographic camera in metres.
     pub half_extent: DVec2,
-    /// Radius of the lens in metres; 0 is a pinhole.
+    /// Radius of the lens in metres; 0 is a pinhole, and what an orthographic camera has.
     pub lens_radius: f64,
     /// Distance along `forward` of the plane that is sharp.
     pub focus: f64,
+}
+
+/// How a camera sees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Projection {
+    /// Through a thin lens: what is far is small.
+    Perspective,
+    /// Along parallel rays that start in the plane through the camera's position.
+    Orthographic,
 }
 
 /// How the picture is traced.
@@ -193,6 +220,8 @@ pub struct Trace {
     pub seed: u64,
     /// Reconstruction filter of a pixel.
     pub filter: Filter,
+    /// What a camera ray sees that meets nothing. Light from beyond the scene lights it all the same.
+    pub background: Background,
 }
 
 /// When a pixel has enough samples. Not part of the hash: more of them refine the same picture.

@@ -32,7 +32,8 @@ pub fn lies_in(inner: &Shape, outer: &Shape) -> bool {
         (_, Shape::Sphere { center, radius }) => in_quadric(inner, &Quadric::ball(*center, *radius)),
         (_, Shape::Quadric(outer)) => in_quadric(inner, outer),
         (_, Shape::Box(outer)) => in_cuboid(inner, outer),
-        (_, Shape::Disk(_)) => false,
+        // What a mesh holds is not asked; of solids within one, those declared later win.
+        (_, Shape::Disk(_) | Shape::Mesh(_)) => false,
     }
 }
 
@@ -49,27 +50,18 @@ fn in_quadric(inner: &Shape, outer: &Quadric) -> bool {
             }
             seen(&inner, map)
         }
-        None => match inner {
-            Shape::Box(placed) => {
-                let map = outer.object_from_world * placed.world_from_object;
-                if corners_lie_in(map, outer) {
-                    return true;
-                }
-                Some(Bounds::CUBE.mapped(&map))
-            }
-            _ => None,
-        },
+        None => as_box(inner).map(|(bounds, world_from_object)| {
+            let map = outer.object_from_world * world_from_object;
+            if corners_lie_in(bounds, map, outer) { Bounds::EMPTY } else { bounds.mapped(&map) }
+        }),
     };
-    around.is_some_and(|bounds| box_lies_in(bounds, outer))
+    around.is_some_and(|bounds| bounds.is_empty() || box_lies_in(bounds, outer))
 }
 
 fn in_cuboid(inner: &Shape, outer: &Placed) -> bool {
-    let around = match (as_quadric(inner), inner) {
-        (Some(inner), _) => seen(&inner, outer.object_from_world * inner.world_from_object),
-        (None, Shape::Box(placed)) => {
-            Some(Bounds::CUBE.mapped(&(outer.object_from_world * placed.world_from_object)))
-        }
-        _ => None,
+    let around = match as_quadric(inner) {
+        Some(inner) => seen(&inner, outer.object_from_world * inner.world_from_object),
+        None => as_box(inner).map(|(bounds, map)| bounds.mapped(&(outer.object_from_world * map))),
     };
     around.is_some_and(|bounds| bounds.min.abs().max(bounds.max.abs()).max_element() <= 1.0 + SLACK)
 }
@@ -82,18 +74,27 @@ fn as_quadric(shape: &Shape) -> Option<Quadric> {
     }
 }
 
+/// A box, or the box around a mesh, in its object space, and the map from there.
+fn as_box(shape: &Shape) -> Option<(Bounds, DAffine3)> {
+    match shape {
+        Shape::Box(placed) => Some((Bounds::CUBE, placed.world_from_object)),
+        Shape::Mesh(instance) => Some((instance.object_bounds(), instance.placed.world_from_object)),
+        _ => None,
+    }
+}
+
 /// The box around a quadric that a map carries elsewhere; none where it has no end.
 fn seen(quadric: &Quadric, map: DAffine3) -> Option<Bounds> {
     let seen = Quadric { world_from_object: map, object_from_world: map.inverse(), ..*quadric };
     Shape::Quadric(Box::new(seen)).bounds()
 }
 
-/// Whether the corners of a cube that a map carries to the object space of a quadric lie in it, and so all of the
-/// cube, since the quadric is convex.
-fn corners_lie_in(map: DAffine3, outer: &Quadric) -> bool {
-    let corner = |i: i32| {
-        let side = |bit: i32| if i & bit == 0 { -1.0 } else { 1.0 };
-        map.transform_point3(DVec3::new(side(1), side(2), side(4)))
+/// Whether the corners of a box that a map carries to the object space of a quadric lie in it, and so all of the
+/// box, since the quadric is convex.
+fn corners_lie_in(bounds: Bounds, map: DAffine3, outer: &Quadric) -> bool {
+    let corner = |i: u32| {
+        let end = |bit: u32, axis: usize| if i & bit == 0 { bounds.min[axis] } else { bounds.max[axis] };
+        map.transform_point3(DVec3::new(end(1, 0), end(2, 1), end(4, 2)))
     };
     let lies_in = |p: DVec3| outer.form.q(p) <= SLACK * (1.0 + p.length_squared()) && spans(outer, p.y, p.y);
     let convex = match outer.form {

@@ -77,8 +77,8 @@ pub(super) fn unexpected_value(token: &str, span: Span) -> Diagnostic {
         }
         "<" => diagnostic.help("values stand in parentheses: `(0, 1, 0)m`"),
         "−" | "–" => diagnostic.help("a minus is written `-`").fix(span, "-"),
-        "+" => diagnostic.help("a positive number has no sign"),
-        "!" => diagnostic.help("write `not`"),
+        "+" => diagnostic.help("a positive number has no sign").fix(span, ""),
+        "!" => diagnostic.help("write `not`").fix(span, "not "),
         "=" => diagnostic.help("write one `=` or `:` and then the value"),
         _ => diagnostic.help("write a value such as `5cm`, `(0, 1, 0)m`, `#d94f30` or a name"),
     }
@@ -90,7 +90,7 @@ pub(super) fn unexpected_extra(token: &str, span: Span) -> Diagnostic {
     match token {
         "{" => diagnostic.help("only a kind is followed by a body: `sphere { … }` or `sphere ball { … }`"),
         "&" => diagnostic.help("write `and`"),
-        "°" => diagnostic.help("an angle is written `45deg`"),
+        "°" => diagnostic.help("an angle is written `45deg`").fix(span, "deg"),
         "|" => diagnostic.help("write `or`, or `|>` to pass a placement on"),
         "^" => diagnostic.help("write `pow(a, b)`, or `a * a` for a square"),
         "?" => diagnostic.help("a choice is written `if … then … else …`"),
@@ -106,9 +106,11 @@ pub(super) fn unexpected_extra(token: &str, span: Span) -> Diagnostic {
 
 /// Text behind a value inside parentheses, or inside a list.
 pub(super) fn unexpected_in_brackets(token: &str, span: Span, closer: &str) -> Diagnostic {
-    unexpected(token, span)
-        .at(format!("a comma or `{closer}` belongs before this"))
-        .help("separate the values by commas")
+    let diagnostic = unexpected(token, span).at(format!("a comma or `{closer}` belongs before this"));
+    match token {
+        "°" => diagnostic.help("an angle is written `45deg`").fix(span, "deg"),
+        _ => diagnostic.help("separate the values by commas"),
+    }
 }
 
 /// Text behind an index.
@@ -129,7 +131,7 @@ pub(super) fn unexpected_entry(token: &str, span: Span, top: bool) -> Diagnostic
         unexpected(token, span).at("a field or a thing should begin here")
     };
     match token {
-        "#" => diagnostic.help("a comment begins with `//`"),
+        "#" => diagnostic.help("a comment begins with `//`").fix(span, "//"),
         "-" => {
             diagnostic.help("a line goes on in the next one behind an operator: end the line above with `-`")
         }

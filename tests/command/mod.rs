@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod pictures;
+mod tools;
 
 use std::fs;
 use std::path::{Path, PathBuf};

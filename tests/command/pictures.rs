@@ -23,6 +23,20 @@ fn one_failing_scene_does_not_stop_the_others() {
 }
 
 #[test]
+fn a_transparent_background_goes_where_it_can_be_held() {
+    let desk = Desk::new();
+    desk.put("open.rt", &format!("{BALL}\nrender {{ background: transparent }}\n"));
+    desk.quick("open.rt -o a.png -o a.exr -o a.webp").expect(0, &["a.png, a.exr, a.webp"]);
+    assert_eq!(desk.get("a.png")[25], 6, "red, green, blue and alpha");
+    desk.run("develop a.exr -o b.png").expect(0, &[]);
+    assert_eq!(desk.get("a.png"), desk.get("b.png"));
+    for format in ["jpg", "hdr", "pfm"] {
+        desk.quick(&format!("open.rt -o c.png -o c.{format}")).expect(2, &["cannot be transparent", "help"]);
+    }
+    assert!(!desk.names().contains(&"c.png".to_string()), "it is refused before anything is made");
+}
+
+#[test]
 fn several_outputs_hold_one_picture() {
     let desk = Desk::new();
     let all = ["a.exr", "a.hdr", "a.jpeg", "a.jpg", "a.pfm", "a.png", "a.webp"];

@@ -3,9 +3,9 @@
 use super::{LightSample, Receiver, Target};
 use crate::color::Rgb;
 use crate::math::{DVec3, PI};
-use crate::render::shape::{Face, Place, SurfacePoint, Wall};
+use crate::render::shape::{Face, Place, Ray, SurfacePoint, Wall, surface_point};
 use crate::render::warp;
-use crate::scene::shape::{Form, Placed, Quadric};
+use crate::scene::shape::{Form, Placed, Quadric, triangle_area};
 use crate::scene::{PrimitiveId, Shape};
 
 /// A glowing surface that has an end.
@@ -60,13 +60,14 @@ impl Glowing {
     pub fn sample(&self, receiver: &Receiver, part: f64, u: [f64; 2], radiance: Rgb) -> Option<LightSample> {
         let index = self.parts.partition_point(|known| known.end <= part).min(self.parts.len() - 1);
         let part = &self.parts[index];
-        let SurfacePoint { p, n } = self.point(part, u);
+        let point = self.point(part, u);
+        let SurfacePoint { p, n, .. } = point;
         let to = p - receiver.p;
         let distance = to.length();
         let wi = to / distance;
         let facing = -n.dot(wi);
         let glows = if self.shape.is_closed() { facing > 0.0 } else { facing != 0.0 };
-        let pdf = self.pdf(receiver.p, wi, &SurfacePoint { p, n }, part.face);
+        let pdf = self.pdf(receiver.p, wi, &point, part.face);
         let place = Place { primitive: self.id, face: part.face };
         let hides_itself = !matches!(self.shape, Shape::Disk(_) | Shape::Box(_));
         (glows && pdf > 0.0 && pdf < f64::INFINITY).then_some(LightSample {
@@ -75,7 +76,7 @@ impl Glowing {
             radiance,
             pdf,
             delta: false,
-            target: Some(Target { point: SurfacePoint { p, n }, place, hides_itself }),
+            target: Some(Target { point, place, hides_itself }),
         })
     }
 
@@ -116,6 +117,14 @@ impl Glowing {
                 };
                 on_placed(placed, p, n)
             }
+            (Shape::Mesh(instance), Face::Triangle(triangle)) => {
+                // Uniform in the triangle (Turk, "Generating random points in triangles", Graphics Gems, 1990).
+                let [a, b, c] = instance.corners(triangle);
+                let root = u[0].sqrt();
+                let p = (1.0 - root) * a + root * (1.0 - u[1]) * b + root * u[1] * c;
+                let ray = Ray { origin: p, direction: DVec3::ZERO, start: None };
+                surface_point(&self.shape, &ray, 0.0, part.face)
+            }
             (shape, face) => unreachable!("{face:?} of {shape:?} is no part"),
         }
     }
@@ -141,6 +150,9 @@ fn pieces(shape: &Shape) -> Vec<(Face, [f64; 2], f64)> {
                 |axis: u8, upper| (Face::Wall(Wall { axis, upper }), NONE, 4.0 * areas[usize::from(axis)]);
             (0..3).flat_map(|axis| [wall(axis, false), wall(axis, true)]).collect()
         }
+        Shape::Mesh(instance) => (0..instance.mesh.len() as u32)
+            .map(|triangle| (Face::Triangle(triangle), NONE, triangle_area(instance.corners(triangle))))
+            .collect(),
         Shape::Sphere { .. } | Shape::Plane { .. } | Shape::Disk(_) => {
             vec![(Face::Side, NONE, shape.area())]
         }
@@ -159,9 +171,9 @@ fn on_quadric(quadric: &Quadric, face: Face, [low, high]: [f64; 2], u: [f64; 2])
         }
     };
     let p = quadric.world_from_object.transform_point3(object);
-    SurfacePoint { p, n: (quadric.object_from_world.matrix3.transpose() * gradient).normalize() }
+    SurfacePoint::new(p, (quadric.object_from_world.matrix3.transpose() * gradient).normalize())
 }
 
 fn on_placed(placed: &Placed, p: DVec3, n: DVec3) -> SurfacePoint {
-    SurfacePoint { p: placed.world_from_object.transform_point3(p), n: placed.normal(n) }
+    SurfacePoint::new(placed.world_from_object.transform_point3(p), placed.normal(n))
 }

@@ -42,5 +42,5 @@ pub(super) fn surface_point(cuboid: &Placed, near: DVec3, face: Face) -> Surface
     let Face::Wall(wall) = face else { unreachable!("a box has no {face:?}") };
     let n = wall.normal();
     o[usize::from(wall.axis)] = n[usize::from(wall.axis)];
-    SurfacePoint { p: cuboid.world_from_object.transform_point3(o), n: cuboid.normal(n) }
+    SurfacePoint::new(cuboid.world_from_object.transform_point3(o), cuboid.normal(n))
 }

@@ -20,5 +20,5 @@ pub(super) fn intersect(disk: &Placed, ray: &Ray, on_it: bool) -> Option<f64> {
 pub(super) fn surface_point(disk: &Placed, near: DVec3) -> SurfacePoint {
     let o = disk.object_from_world.transform_point3(near);
     let p = disk.world_from_object.transform_point3(DVec3::new(o.x, 0.0, o.z));
-    SurfacePoint { p, n: disk.normal(DVec3::Y) }
+    SurfacePoint::new(p, disk.normal(DVec3::Y))
 }

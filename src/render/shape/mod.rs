@@ -6,12 +6,15 @@
 
 mod cuboid;
 mod disk;
+mod mesh;
 mod plane;
 mod quadric;
 mod sphere;
 
 use crate::math::DVec3;
 use crate::scene::{PrimitiveId, Shape};
+pub use mesh::Tree;
+pub(super) use mesh::uv as mesh_uv;
 
 /// A half-line, and the surface it starts on.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +47,8 @@ pub enum Face {
     High,
     /// A side of a box.
     Wall(Wall),
+    /// A triangle of a mesh.
+    Triangle(u32),
 }
 
 /// A side of a box in object space.
@@ -71,10 +76,19 @@ pub struct SurfacePoint {
     pub p: DVec3,
     /// Unit normal, outwards where the shape is closed.
     pub n: DVec3,
+    /// Unit normal to shade with, on the side of the other: that of the round surface which a smooth mesh stands for.
+    pub shading: DVec3,
+}
+
+impl SurfacePoint {
+    /// A point of a surface that is what it looks.
+    pub fn new(p: DVec3, n: DVec3) -> SurfacePoint {
+        SurfacePoint { p, n, shading: n }
+    }
 }
 
 /// The least distance above 0 at which a ray meets a shape. `start` is the face that the ray starts on, if it
-/// starts on this very shape.
+/// starts on this very shape. A mesh is asked triangle by triangle: [`Tree`] is the fast way.
 #[inline]
 pub fn intersect(shape: &Shape, ray: &Ray, start: Option<Face>) -> Option<(f64, Face)> {
     match shape {
@@ -87,6 +101,7 @@ pub fn intersect(shape: &Shape, ray: &Ray, start: Option<Face>) -> Option<(f64, 
         Shape::Quadric(quadric) => quadric::intersect(quadric, ray, start),
         Shape::Disk(placed) => disk::intersect(placed, ray, start.is_some()).map(|t| (t, Face::Side)),
         Shape::Box(placed) => cuboid::intersect(placed, ray, start),
+        Shape::Mesh(instance) => mesh::intersect(instance, ray, start),
     }
 }
 
@@ -96,13 +111,14 @@ pub fn surface_point(shape: &Shape, ray: &Ray, t: f64, face: Face) -> SurfacePoi
     match shape {
         Shape::Sphere { center, radius } => {
             let n = (near - *center).normalize();
-            SurfacePoint { p: *center + *radius * n, n }
+            SurfacePoint::new(*center + *radius * n, n)
         }
         Shape::Plane { point, normal } => {
-            SurfacePoint { p: near - normal.dot(near - *point) * *normal, n: *normal }
+            SurfacePoint::new(near - normal.dot(near - *point) * *normal, *normal)
         }
         Shape::Quadric(quadric) => quadric::surface_point(quadric, near, face),
         Shape::Disk(placed) => disk::surface_point(placed, near),
         Shape::Box(placed) => cuboid::surface_point(placed, near, face),
+        Shape::Mesh(instance) => mesh::surface_point(instance, near, face),
     }
 }

@@ -109,7 +109,7 @@ fn stretch(quadric: &Quadric, o: DVec3, d: DVec3, start: Option<Face>) -> Option
 pub(super) fn surface_point(quadric: &Quadric, near: DVec3, face: Face) -> SurfacePoint {
     let mut p = quadric.object_from_world.transform_point3(near);
     let gradient = match face {
-        Face::Side | Face::Wall(_) => {
+        Face::Side | Face::Wall(_) | Face::Triangle(_) => {
             let slope = quadric.form.half_gradient(p);
             let squared = slope.length_squared();
             if squared.is_normal() {
@@ -131,5 +131,5 @@ pub(super) fn surface_point(quadric: &Quadric, near: DVec3, face: Face) -> Surfa
     };
     // Normals go by the inverse transpose.
     let n = (quadric.object_from_world.matrix3.transpose() * gradient).normalize();
-    SurfacePoint { p: quadric.world_from_object.transform_point3(p), n }
+    SurfacePoint::new(quadric.world_from_object.transform_point3(p), n)
 }

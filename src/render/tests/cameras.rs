@@ -33,6 +33,73 @@ fn pixels_lie_from_the_top_left() {
 }
 
 #[test]
+fn an_orthographic_camera_sees_along_parallel_rays() {
+    let mut scene = wide();
+    scene.camera.projection = Projection::Orthographic;
+    let rays = rays(&scene, 4096);
+    assert!(rays.iter().all(|(ray, _)| ray.direction == scene.camera.forward));
+    for distance in [0.0, 7.0] {
+        let mean = rays.iter().map(|(ray, _)| crossing(&scene, ray, distance)).sum::<DVec2>() / 4096.0;
+        assert!(mean.distance(DVec2::new(0.1, -0.1)) < 1e-3, "{mean}");
+    }
+    // A ball is as large from afar: π/4 of a window that it touches.
+    for z in [-2.0, -200.0] {
+        let mut scene = super::scene(DVec3::ZERO, DVec3::NEG_Z).with(sphere(v(0.0, 0.0, z), 1.0), glow(1.0));
+        scene.camera.projection = Projection::Orthographic;
+        scene.camera.half_extent = DVec2::ONE;
+        assert_shows(&scene, 20_000, 0.25 * PI, 1e-3);
+    }
+}
+
+#[test]
+fn an_orthographic_camera_may_start_in_glass() {
+    // Only a part of its window is in the ball.
+    let ball = sphere(v(0.4, 0.0, 0.0), 0.5);
+    let mut scene = super::scene(DVec3::ZERO, DVec3::NEG_Z).with(ball, glass(1.0)).with_sky(1.0);
+    scene.camera.projection = Projection::Orthographic;
+    scene.camera.half_extent = DVec2::ONE;
+    assert_shows(&scene, 2000, 1.0, 1e-9);
+    scene.materials[0] = Material::Dielectric { ior: 1.0, absorption: Rgb::splat(1e9), alpha: 0.0 };
+    assert_shows(&scene, 40_000, 1.0 - 0.25 * PI * 0.25, 2e-2);
+}
+
+#[test]
+fn a_transparent_background_is_open_where_nothing_is_met() {
+    for filter in [Filter::Box, Filter::Gaussian, Filter::Mitchell] {
+        let mut scene = super::scene(DVec3::ZERO, DVec3::NEG_Z)
+            .with(sphere(v(0.0, 0.0, -3.0), 1.0), white())
+            .with(sphere(v(1.5, 0.0, -3.0), 0.4), glass(1.5))
+            .with_sky(1.0);
+        scene.trace.background = Background::Transparent;
+        scene.trace.filter = filter;
+        scene.trace.size = [24, 24];
+        scene.camera.projection = Projection::Orthographic;
+        scene.camera.half_extent = DVec2::splat(2.0);
+        let tracer = Tracer::new(&scene);
+        let shown = Shown { stops: 0.0, tonemap: Tonemap::None };
+        let whole = Window::whole(scene.trace.size);
+        let target = Target::Samples(64);
+        let film = tracer.render(whole, target, &tracer.prepass(), shown, &Control::new()).unwrap().film;
+        // Exactly, whatever the weights of the filter add up to.
+        assert_eq!((film.alpha(0, 0), film.mean(0, 0)), (0.0, Rgb::ZERO));
+        assert_eq!(film.alpha(12, 12), 1.0);
+        assert_eq!(film.alpha(21, 12), 1.0, "glass covers, though the sky is seen through it");
+        let pixels = (0..24).flat_map(|y| (0..24).map(move |x| (x, y)));
+        let (mut covered, mut edges) = (0.0, 0);
+        for (x, y) in pixels {
+            let (alpha, mean) = (film.alpha(x, y), film.mean(x, y));
+            covered += alpha * 16.0 / 576.0;
+            edges += u32::from(alpha > 0.0 && alpha < 1.0);
+            // All that covers is as bright as the sky, so the radiance is the share.
+            if filter != Filter::Mitchell {
+                assert!((mean.y - alpha).abs() < 0.05, "{filter:?} {mean} {alpha}");
+            }
+        }
+        assert!((covered - 1.16 * PI).abs() < 0.05 && edges > 20, "{filter:?}: {covered} {edges}");
+    }
+}
+
+#[test]
 fn filters_are_drawn_from_as_they_are_defined() {
     const N: u32 = 1 << 16;
     for filter in [Filter::Box, Filter::Tent, Filter::Gaussian, Filter::Mitchell] {

@@ -90,7 +90,7 @@ fn noise_is_met_or_told() {
 fn cancelling_stops_soon() {
     let scene = reference::room().bounces(1000);
     let tracer = Tracer::new(&scene);
-    let prepass = Prepass { exposure_stops: 0.0, scale: 65_536.0 };
+    let prepass = Prepass { exposure_stops: 0.0, scale: 65_536.0, cut: 0.0 };
     let control = Control::new();
     let window = Window::whole(scene.trace.size);
     std::thread::scope(|scope| {

@@ -127,7 +127,8 @@ fn medium_at(p: DVec3, shapes: &[&Shape]) -> Option<usize> {
     }
     let dielectrics = Dielectrics::new(&scene);
     let mut inside = Inside::default();
-    dielectrics.enter_at(&Ray { origin: p, direction: DVec3::Z, start: None }, &mut inside);
+    let accel = Accel::new(&scene.primitives);
+    dielectrics.enter_at(&accel, &Ray { origin: p, direction: DVec3::Z, start: None }, &mut inside);
     let left = dielectrics.transmission(&inside, 1.0).x;
     (left < 1.0).then(|| (-crate::math::ln(left)).round() as usize - 1)
 }

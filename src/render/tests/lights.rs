@@ -21,6 +21,45 @@ fn a_point_light_falls_off_with_the_square() {
     assert_shows(&below, 10, 0.0, 0.0);
 }
 
+/// A spot of intensity 1 above the floor, aimed by an angle off the vertical.
+fn spot(tilt: f64, inner: f64, outer: f64) -> Light {
+    let direction = v(sin(tilt), -cos(tilt), 0.0);
+    Light::Spot { position: v(0.0, 2.0, 0.0), direction, intensity: Rgb::ONE, inner, outer }
+}
+
+#[test]
+fn a_spot_shines_into_its_cone_alone() {
+    // Straight down, as a point light does.
+    let below = |light| floor_below().with_light(light);
+    assert_shows(&below(spot(0.0, 0.3, 0.3)), 10, 0.25 / PI, 1e-9);
+    assert_shows(&below(spot(0.299_999, 0.3, 0.3)), 10, 0.25 / PI, 1e-9);
+    assert_shows(&below(spot(0.300_001, 0.3, 0.3)), 10, 0.0, 0.0);
+    assert_shows(&below(spot(0.35, 0.3, 0.3)), 10, 0.0, 0.0);
+    // Half way between the cosines it is half as bright; beyond a straight angle it is a point.
+    let half = crate::math::acos(0.5 * (cos(0.2) + cos(0.5)));
+    assert_shows(&below(spot(half, 0.2, 0.5)), 10, 0.125 / PI, 1e-6);
+    assert_shows(&below(spot(2.5, PI, PI)), 10, 0.25 / PI, 1e-9);
+}
+
+#[test]
+fn a_spot_radiates_what_its_falloff_integrates_to() {
+    let mut random = Random(4);
+    for (inner, outer) in [(0.2, 0.2), (0.3, 0.45), (0.0, 1.0), (0.5 * PI, PI)] {
+        let scene = scene(DVec3::ZERO, DVec3::Z).with_light(spot(0.4, inner, outer));
+        let lights = Lights::new(&scene);
+        const N: u32 = 200_000;
+        let flux: f64 = (0..N)
+            .filter_map(|_| {
+                let receiver = Receiver { p: v(0.0, 2.0, 0.0) + random.direction(), n: None };
+                let (lamp, ..) = lights.choose(&receiver, 0.0, 0.5);
+                Some(lamp.sample(&receiver, 0.5, [0.5; 2])?.radiance.x * 4.0 * PI / f64::from(N))
+            })
+            .sum();
+        let expected = 2.0 * PI * (1.0 - 0.5 * (cos(inner) + cos(outer)));
+        assert!((flux / expected - 1.0).abs() < 0.05, "{inner} {outer}: {flux}, {expected}");
+    }
+}
+
 #[test]
 fn a_sun_gives_its_irradiance() {
     for radius in [0.0, 1e-6, 0.0046, 0.3, 0.5 * PI] {

@@ -6,17 +6,21 @@ mod cameras;
 mod determinism;
 mod glass;
 mod lights;
+mod meshes;
 mod numbers;
 mod reference;
 mod shapes;
+mod skies;
 mod solids;
+mod textures;
 
 use super::*;
 use crate::color::luminance;
 use crate::math::{DMat3, DVec2, DVec3, PI, pow};
 use crate::scene::shape::{Form, Placed, Quadric};
 use crate::scene::{
-    Camera, Develop, Filter, Light, MaterialId, OriginId, Primitive, PrimitiveId, Shape, Trace,
+    Background, Camera, Develop, Filter, Light, MaterialId, OriginId, Primitive, PrimitiveId, Projection,
+    Shape, Trace,
 };
 
 /// A scene without anything, whose camera at `from` looks towards `look` through a narrow pinhole.
@@ -31,6 +35,7 @@ fn scene(from: DVec3, look: DVec3) -> Scene {
         frames: Vec::new(),
         lights: Vec::new(),
         camera: Camera {
+            projection: Projection::Perspective,
             position: from,
             right,
             up,
@@ -46,6 +51,7 @@ fn scene(from: DVec3, look: DVec3) -> Scene {
             indirect: true,
             seed: 1,
             filter: Filter::Box,
+            background: Background::Sky,
         },
         develop: Develop { exposure: None, tonemap: Tonemap::Neutral },
     }

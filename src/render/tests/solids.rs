@@ -32,6 +32,13 @@ fn solids() -> Vec<(&'static str, Shape)> {
         .collect()
 }
 
+/// And one of triangles, which knows less quickly what is inside of it.
+fn solids_and_a_mesh() -> Vec<(&'static str, Shape)> {
+    let mut all = solids();
+    all.push(("mesh", meshes::mesh(&meshes::ball(2), skew().matrix3, skew().translation, false)));
+    all
+}
+
 /// The first distance at which a ray goes into or out of a solid, by steps and bisection.
 fn march(shape: &Shape, ray: &Ray) -> Option<f64> {
     const STEPS: u32 = 4000;
@@ -89,7 +96,7 @@ fn drawn(shape: &Shape, random: &mut Random, count: usize) -> Vec<DVec3> {
 fn lamps_are_sampled_on_their_surface_within_tight_bounds() {
     let mut random = Random(12);
     let disk = ("disk", Shape::Disk(placed(skew().matrix3, skew().translation)));
-    for (name, shape) in solids().into_iter().chain([disk]) {
+    for (name, shape) in solids_and_a_mesh().into_iter().chain([disk]) {
         let bounds = shape.bounds().expect("it has an end");
         let mut seen = crate::scene::shape::Bounds::EMPTY;
         for p in drawn(&shape, &mut random, 40_000) {
@@ -109,7 +116,7 @@ fn a_lamp_of_a_given_power_radiates_it() {
     const FAR: f64 = 1000.0;
     let mut random = Random(40);
     let disk = ("disk", Shape::Disk(placed(skew().matrix3, skew().translation)));
-    for (name, shape) in solids().into_iter().chain([disk]) {
+    for (name, shape) in solids_and_a_mesh().into_iter().chain([disk]) {
         if matches!(name, "tower" | "bowls") {
             continue;
         }
@@ -149,7 +156,7 @@ fn a_white_solid_in_a_white_world_is_not_to_be_seen() {
 
 #[test]
 fn clear_glass_in_a_white_world_is_not_to_be_seen() {
-    for (name, shape) in solids() {
+    for (name, shape) in solids_and_a_mesh() {
         let mut seen =
             scene(v(3.0, 2.5, 4.0), DVec3::ZERO).with(shape, glass(1.5)).with_sky(1.0).bounces(400);
         seen.camera.half_extent = DVec2::splat(0.2);
@@ -163,7 +170,7 @@ fn clear_glass_in_a_white_world_is_not_to_be_seen() {
 fn nothing_leaves_a_solid_from_the_inside() {
     // A path that bounces about inside meets a wall each time, however thin the corner it is in.
     let mut random = Random(9);
-    for (name, shape) in solids() {
+    for (name, shape) in solids_and_a_mesh() {
         let closed = scene(DVec3::ZERO, DVec3::Z).with(shape.clone(), white());
         let accel = Accel::new(&closed.primitives);
         let mut ray = (0..)

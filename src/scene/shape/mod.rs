@@ -1,11 +1,13 @@
 //! Surfaces in world space, with what can be said of them without a ray: bounds, area, inside.
 
 mod bounds;
+mod instance;
 mod placed;
 mod quadric;
 
 use crate::math::{DVec3, PI};
 pub use bounds::Bounds;
+pub use instance::{Instance, area as triangle_area};
 pub use placed::Placed;
 pub use quadric::{Form, Quadric};
 use serde::Serialize;
@@ -33,6 +35,8 @@ pub enum Shape {
     Disk(Box<Placed>),
     /// The cube [−1, 1]³ of object space, carried to the world.
     Box(Box<Placed>),
+    /// Triangles.
+    Mesh(Box<Instance>),
 }
 
 impl Shape {
@@ -46,10 +50,12 @@ impl Shape {
             Shape::Quadric(quadric) => quadric.bounds(),
             Shape::Disk(placed) => Some(placed.disk_bounds()),
             Shape::Box(placed) => Some(Bounds::CUBE.mapped(&placed.world_from_object)),
+            Shape::Mesh(instance) => Some(instance.bounds()),
         }
     }
 
-    /// How far it reaches along a unit vector beyond a point; none for a surface without end.
+    /// How far it reaches along a unit vector beyond a point; none for a surface without end. Of a mesh, at most how
+    /// far.
     pub fn reach(&self, direction: DVec3, from: DVec3) -> Option<f64> {
         match self {
             Shape::Sphere { center, radius } => Some(direction.dot(*center - from) + radius),
@@ -60,6 +66,7 @@ impl Shape {
             }
             Shape::Disk(placed) => Some(placed.reach_of_disk(direction, from)),
             Shape::Box(placed) => Some(placed.reach_of_box(direction, from)),
+            Shape::Mesh(instance) => Some(instance.reach(direction, from)),
         }
     }
 
@@ -74,6 +81,7 @@ impl Shape {
             }
             Shape::Disk(_) => false,
             Shape::Box(placed) => placed.object_from_world.transform_point3(p).abs().cmplt(DVec3::ONE).all(),
+            Shape::Mesh(instance) => instance.contains(p),
         }
     }
 
@@ -82,6 +90,7 @@ impl Shape {
         match self {
             Shape::Sphere { .. } | Shape::Plane { .. } | Shape::Box(_) => true,
             Shape::Disk(_) => false,
+            Shape::Mesh(instance) => instance.mesh.is_closed(),
             Shape::Quadric(quadric) => quadric.is_closed(),
         }
     }
@@ -94,6 +103,7 @@ impl Shape {
             Shape::Quadric(quadric) => quadric.area(),
             Shape::Disk(placed) => PI * placed.unit_areas().y,
             Shape::Box(placed) => 8.0 * placed.unit_areas().element_sum(),
+            Shape::Mesh(instance) => instance.area(),
         }
     }
 }

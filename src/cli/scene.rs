@@ -1,0 +1,50 @@
+//! A scene with all that it reads: from the command line to what the compiler says of it.
+
+use super::Problem;
+use super::args::Reading;
+use super::files::Disk;
+use super::input::{self, Input, is_standard};
+use rt_lang::files::FilePath;
+use rt_lang::lower::Overrides;
+use rt_lang::source::Sources;
+use rt_lang::span::SourceId;
+use rt_lang::{Compiled, compile};
+use std::path::Path;
+
+/// A scene that was compiled, or refused.
+pub struct Loaded {
+    /// Its text, and those of all files that it imports.
+    pub sources: Sources,
+    /// Its own text.
+    pub id: SourceId,
+    /// What it read.
+    pub files: Disk,
+    /// What the compiler made of it.
+    pub compiled: Compiled,
+}
+
+/// Reads and compiles a scene.
+pub fn load(path: &Path, reading: &Reading, overrides: &Overrides) -> Result<Loaded, Problem> {
+    let input = input::read(path)?;
+    take(path, input, reading, overrides)
+}
+
+/// Compiles a scene that was read.
+pub fn take(path: &Path, input: Input, reading: &Reading, overrides: &Overrides) -> Result<Loaded, Problem> {
+    let Input { mut sources, id, refused } = input;
+    let (files, place) = disk(path, reading)?;
+    sources.place(id, place);
+    let compiled = match refused {
+        Some(refused) => Compiled::refused(refused),
+        None => compile(&files, &mut sources, id, &reading.options(overrides.clone())),
+    };
+    Ok(Loaded { sources, id, files, compiled })
+}
+
+/// What a scene may read, and its own place there.
+fn disk(path: &Path, reading: &Reading) -> Result<(Disk, FilePath), Problem> {
+    let own = if is_standard(path) { Path::new("") } else { path.parent().unwrap_or(Path::new("")) };
+    let disk = Disk::below(reading.root.as_deref().unwrap_or(own))?;
+    let place = if is_standard(path) { FilePath::root("<stdin>") } else { disk.path_of(path)? };
+    Ok((disk, place))
+}

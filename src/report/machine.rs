@@ -1,0 +1,137 @@
+//! Diagnostics for programs: one JSON object a line. `docs/diagnostics-json.md` is its contract.
+
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::source::Sources;
+use crate::span::Span;
+use serde::Serialize;
+
+/// The version of the form. It grows when a field goes or changes its meaning, not when one is added.
+pub const SCHEMA: u32 = 1;
+
+#[derive(Serialize)]
+struct Object<'a> {
+    schema: u32,
+    code: &'static str,
+    title: &'static str,
+    severity: &'static str,
+    message: &'a str,
+    #[serde(flatten)]
+    place: Place<'a>,
+    label: Option<&'a str>,
+    labels: Vec<Note<'a>>,
+    help: Option<&'a str>,
+    fixes: Vec<Mend<'a>>,
+    uses: Vec<Note<'a>>,
+}
+
+/// A range of a file.
+#[derive(Serialize)]
+struct Place<'a> {
+    file: &'a str,
+    start: Point,
+    end: Point,
+}
+
+#[derive(Serialize)]
+struct Point {
+    byte: u32,
+    line: usize,
+    column: usize,
+}
+
+/// A range with what is said of it.
+#[derive(Serialize)]
+struct Note<'a> {
+    #[serde(flatten)]
+    place: Place<'a>,
+    text: &'a str,
+}
+
+#[derive(Serialize)]
+struct Mend<'a> {
+    edits: Vec<Note<'a>>,
+}
+
+/// One diagnostic as a JSON object, without a line end in it.
+pub fn json(diagnostic: &Diagnostic, sources: &Sources) -> String {
+    let note = |span: Span, text| Note { place: place(span, sources), text };
+    let mends = diagnostic
+        .fix
+        .iter()
+        .map(|fix| Mend { edits: fix.edits.iter().map(|(span, text)| note(*span, text.as_str())).collect() });
+    let object = Object {
+        schema: SCHEMA,
+        code: diagnostic.code.as_str(),
+        title: diagnostic.code.title(),
+        severity: severity(diagnostic),
+        message: &diagnostic.message,
+        place: place(diagnostic.primary.span, sources),
+        label: Some(diagnostic.primary.text.as_str()).filter(|text| !text.is_empty()),
+        labels: diagnostic.labels.iter().map(|label| note(label.span, label.text.as_str())).collect(),
+        help: diagnostic.help.as_deref(),
+        fixes: mends.collect(),
+        uses: diagnostic
+            .uses
+            .iter()
+            .map(|span| note(*span, super::first_line(sources.text(*span))))
+            .collect(),
+    };
+    serde_json::to_string(&object).unwrap_or_else(|_| unreachable!("texts and numbers are always JSON"))
+}
+
+/// One line of a workflow command, by which GitHub shows a diagnostic beside the changed line.
+///
+/// Source: GitHub documentation, "Workflow commands for GitHub Actions", setting an error message.
+pub fn github(diagnostic: &Diagnostic, sources: &Sources) -> String {
+    let place = place(diagnostic.primary.span, sources);
+    let title = format!("{} {}", diagnostic.code.as_str(), diagnostic.code.title());
+    let mut text = diagnostic.message.clone();
+    if let Some(help) = &diagnostic.help {
+        text.push_str("\nhelp: ");
+        text.push_str(help);
+    }
+    format!(
+        "::{} file={},line={},col={},endLine={},endColumn={},title={}::{}",
+        severity(diagnostic),
+        property(place.file),
+        place.start.line,
+        place.start.column,
+        place.end.line,
+        place.end.column,
+        property(&title),
+        data(&text)
+    )
+}
+
+fn data(text: &str) -> String {
+    text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A")
+}
+
+fn property(text: &str) -> String {
+    data(text).replace(':', "%3A").replace(',', "%2C")
+}
+
+/// One line: place, severity, code and message, as many editors read it.
+pub fn short(diagnostic: &Diagnostic, sources: &Sources) -> String {
+    let at = super::at(diagnostic.primary.span, sources);
+    let message = super::sentence(&diagnostic.message).replace('\n', " ");
+    format!("{at}: {}[{}]: {message}", severity(diagnostic), diagnostic.code.as_str())
+}
+
+fn severity(diagnostic: &Diagnostic) -> &'static str {
+    match diagnostic.severity() {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+    }
+}
+
+fn place(span: Span, sources: &Sources) -> Place<'_> {
+    let source = sources.get(span.source);
+    let point = |byte: u32| {
+        // A place may name more than there is, where only the beginning of a file was kept.
+        let byte = byte.min(source.text.len() as u32);
+        let (line, column) = source.line_column(source.text.floor_char_boundary(byte as usize));
+        Point { byte, line, column }
+    };
+    Place { file: &source.name, start: point(span.start), end: point(span.end) }
+}

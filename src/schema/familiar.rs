@@ -1,0 +1,251 @@
+//! What other tools call the fields and kinds that have another name here: for hints beyond spelling.
+
+use super::Category;
+
+/// What a name from elsewhere means here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Familiar {
+    /// The name that it has here, if it is one field or kind.
+    pub name: Option<&'static str>,
+    /// Whether the value can stay as it is, so that the name alone is replaced.
+    pub same_value: bool,
+    /// One sentence without a full stop.
+    pub hint: &'static str,
+}
+
+const fn renamed(name: &'static str, hint: &'static str) -> Familiar {
+    Familiar { name: Some(name), same_value: true, hint }
+}
+
+const fn rewritten(name: &'static str, hint: &'static str) -> Familiar {
+    Familiar { name: Some(name), same_value: false, hint }
+}
+
+const fn elsewhere(hint: &'static str) -> Familiar {
+    Familiar { name: None, same_value: false, hint }
+}
+
+/// What a field that a kind does not have is called here.
+pub fn field(kind: &str, category: Category, name: &str) -> Option<Familiar> {
+    match category {
+        Category::Shape | Category::Group => placed(name).or_else(|| shape(kind, name)),
+        Category::Material => material(kind, name),
+        Category::Light => light(kind, name),
+        Category::Block => block(kind, name),
+    }
+}
+
+fn placed(name: &str) -> Option<Familiar> {
+    Some(match name {
+        "position" | "pos" | "location" | "center" | "centre" | "origin" => {
+            renamed("at", "`at` says where it stands")
+        }
+        "translate" | "translation" | "rotate" | "rotation" | "scale" | "transform" | "orientation"
+        | "matrix" => rewritten(
+            "place",
+            "`place` scales, turns and moves: `place: scale(2) |> turn(y: 30deg) |> move(0, 1m, 0)`",
+        ),
+        "color" | "colour" | "albedo" | "pigment" => {
+            rewritten("material", "a colour belongs to a material: `material: diffuse { color: #d94f30 }`")
+        }
+        "texture" | "finish" | "shader" | "bsdf" | "surface" => rewritten(
+            "material",
+            "`material` says what it is made of: `material: diffuse { color: #d94f30 }`",
+        ),
+        "emission" | "emissive" => {
+            rewritten("material", "what glows has an `emitter`: `material: emitter { power: 5W }`")
+        }
+        _ => return None,
+    })
+}
+
+fn shape(kind: &str, name: &str) -> Option<Familiar> {
+    Some(match (kind, name) {
+        ("sphere" | "disk" | "cylinder" | "cone" | "paraboloid", "diameter") => {
+            rewritten("radius", "`radius` is half of the diameter")
+        }
+        ("box", "width" | "height" | "depth" | "dimensions" | "extent" | "extents") => {
+            rewritten("size", "`size` is width, height and depth together: `size: (1, 2, 3)m`")
+        }
+        ("plane" | "disk", "up" | "direction" | "axis") => {
+            renamed("normal", "`normal` is the way that it faces")
+        }
+        ("plane", "distance" | "offset") => rewritten("at", "`at` is a point that it goes through"),
+        ("mesh", "path" | "src" | "source" | "filename") => renamed("file", "`file` names the mesh"),
+        _ => return None,
+    })
+}
+
+fn material(kind: &str, name: &str) -> Option<Familiar> {
+    Some(match (kind, name) {
+        ("dielectric", "index" | "eta" | "refractive_index" | "refraction" | "index_of_refraction") => {
+            renamed("ior", "`ior` is the refractive index")
+        }
+        ("plastic", "index" | "eta" | "refractive_index" | "index_of_refraction") => {
+            renamed("ior", "`ior` is the refractive index of the coat")
+        }
+        (
+            "dielectric",
+            "color" | "colour" | "albedo" | "base_color" | "transmission" | "absorption" | "transmittance",
+        ) => rewritten("tint", "`tint` is the colour that white light has after travelling `depth` inside"),
+        ("emitter", "intensity" | "strength" | "brightness" | "emission" | "energy") => {
+            rewritten("radiance", "say how much it gives with `power: 5W` in all, or with `radiance: 2W/m2`")
+        }
+        (
+            "diffuse" | "mirror" | "metal" | "plastic",
+            "colour" | "albedo" | "reflectance" | "base_color" | "kd",
+        ) => renamed("color", "`color` is the reflectance"),
+        (
+            "metal" | "plastic" | "dielectric",
+            "glossiness" | "shininess" | "smoothness" | "fuzz" | "alpha",
+        ) => rewritten("roughness", "`roughness` is 0 for polished and 1 for matt"),
+        _ => return None,
+    })
+}
+
+fn light(kind: &str, name: &str) -> Option<Familiar> {
+    const MUCH: [&str; 8] =
+        ["intensity", "strength", "energy", "brightness", "emission", "flux", "watts", "luminosity"];
+    let much = MUCH.contains(&name);
+    Some(match (kind, name) {
+        ("light", "position" | "pos" | "location" | "center" | "centre" | "from" | "origin") => {
+            renamed("at", "`at` says where it stands")
+        }
+        ("light", _) if much => rewritten("power", "`power` is what it radiates in all: `power: 60W`"),
+        ("light", "size") => rewritten("radius", "`radius` makes it a glowing ball, with soft shadows"),
+        ("sun", "direction" | "dir" | "to" | "position") => {
+            rewritten("from", "`from` points towards the sun, against the way its light goes")
+        }
+        ("sun", "power") => {
+            rewritten("irradiance", "`irradiance` is what falls on a surface that faces it: `3W/m2`")
+        }
+        ("sun", _) if much => {
+            rewritten("irradiance", "`irradiance` is what falls on a surface that faces it: `3W/m2`")
+        }
+        ("sun", "size" | "diameter") => renamed("angle", "`angle` is its apparent diameter"),
+        ("sky", "power") => rewritten("radiance", "`radiance` is what every direction gives: `1W/m2`"),
+        ("sky", _) if much => rewritten("radiance", "`radiance` is what every direction gives: `1W/m2`"),
+        ("sky", "map" | "hdri" | "texture" | "file" | "environment") => {
+            renamed("image", "`image` names the picture")
+        }
+        (_, "colour") => renamed("color", "`color` is its colour"),
+        _ => return None,
+    })
+}
+
+fn block(kind: &str, name: &str) -> Option<Familiar> {
+    Some(match (kind, name) {
+        ("camera", "position" | "pos" | "location" | "eye" | "origin" | "center" | "at") => {
+            renamed("from", "`from` says where the camera stands")
+        }
+        ("camera", "look_at" | "lookat" | "lookAt" | "target" | "to" | "aim") => {
+            renamed("look", "`look` says what is in the middle of the picture")
+        }
+        ("camera", "angle" | "field_of_view" | "fovx" | "hfov") => {
+            renamed("fov", "`fov` is the view across the width")
+        }
+        (
+            "camera",
+            "aperture" | "focal" | "focal_length" | "stop" | "fstop" | "f_stop" | "focus" | "focus_distance",
+        ) => rewritten("lens", "it belongs to the lens: `lens { focal: 50mm, stop: 2.8 }`"),
+        ("camera", "resolution" | "size") => {
+            elsewhere("the size belongs to the picture: `render { size: (1280, 720) }`")
+        }
+        ("lens", "focal_length") => renamed("focal", "`focal` is the focal length"),
+        ("lens", "f_stop" | "fstop" | "f_number") => renamed("stop", "`stop` is the f-number"),
+        ("lens", "focus_distance" | "focal_distance") => renamed("focus", "`focus` is where it is sharp"),
+        ("render", "resolution" | "res" | "dimensions") => {
+            renamed("size", "`size` is width and height in pixels")
+        }
+        ("render", "width" | "height") => {
+            rewritten("size", "`size` is width and height together: `size: (1280, 720)`")
+        }
+        ("render", "spp" | "sample_count" | "samples_per_pixel") => {
+            renamed("samples", "`samples` are those of a pixel")
+        }
+        ("render", "depth" | "max_depth" | "maxdepth" | "max_bounces" | "recursion") => {
+            renamed("bounces", "`bounces` limits how often light is scattered")
+        }
+        ("render", "output" | "file" | "filename") => {
+            elsewhere("the command says where to: `rtc build scene.rt -o picture.png`")
+        }
+        ("render", "threads") => elsewhere("the command says how many: `rtc build scene.rt -j 4`"),
+        ("render", "exposure") => elsewhere("`exposure` belongs to the camera"),
+        ("render", "background") => {
+            elsewhere("what is behind everything is the sky: `sky { color: #203040 }`")
+        }
+        _ => return None,
+    })
+}
+
+/// What a kind that there is not is called here.
+pub fn kind(name: &str) -> Option<Familiar> {
+    Some(match name {
+        "ball" => renamed("sphere", "a ball is a `sphere`"),
+        "cube" | "cuboid" | "brick" => rewritten("box", "a box is a `box`, with its `size`"),
+        "disc" => renamed("disk", "a disc is a `disk`"),
+        "ground" | "floor" => rewritten("plane", "an endless floor is a `plane`"),
+        "point_light" | "pointlight" | "light_source" | "lamp" | "omni" => {
+            renamed("light", "a lamp is a `light`")
+        }
+        "spot" | "spotlight" | "spot_light" => {
+            rewritten("light", "a spot is a `light` with `aim` and `cone`")
+        }
+        "area_light" | "arealight" => rewritten(
+            "light",
+            "a light with a `radius` glows as a ball; any shape glows with an `emitter` as its material",
+        ),
+        "directional" | "directional_light" | "sunlight" | "distant" => {
+            rewritten("sun", "light from far away is a `sun`: `sun { from: (1, 2, 1), irradiance: 3W/m2 }`")
+        }
+        "background" | "environment" | "env" | "sky_sphere" | "hdri" => {
+            rewritten("sky", "what is behind everything is the `sky`: `sky { color: #203040 }`")
+        }
+        "glass" | "water" => renamed("dielectric", "glass and water are a `dielectric`"),
+        "lambertian" | "lambert" | "matte" => renamed("diffuse", "a matt surface is `diffuse`"),
+        "specular" => renamed("mirror", "a perfect mirror is a `mirror`"),
+        "conductor" => renamed("metal", "a conductor is a `metal`"),
+        "emissive" | "emission" | "area" | "diffuse_light" => {
+            rewritten("emitter", "what glows is an `emitter`")
+        }
+        "settings" | "image" | "film" | "output" | "global_settings" => {
+            rewritten("render", "how the picture is made stands in `render`: `render { size: (1280, 720) }`")
+        }
+        "union" | "object" | "node" | "scene" | "world" => {
+            rewritten("group", "things are put together in a `group`")
+        }
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schema::{self, KindId};
+
+    /// Every name that a hint leads to exists, and no hint hides a field that there is.
+    #[test]
+    fn hints_lead_to_what_there_is() {
+        let words: Vec<&str> =
+            include_str!("familiar.rs").split('"').filter(|word| word.len() < 30).collect();
+        for index in 0..schema::KINDS.len() {
+            let id = KindId(index as u8);
+            for word in &words {
+                let Some(found) = field(id.get().name, id.get().category, word) else { continue };
+                if id.field_index(word).is_none()
+                    && let Some(name) = found.name
+                {
+                    assert!(id.field_index(name).is_some(), "{}: {word} leads to {name}", id.get().name);
+                }
+            }
+        }
+        for word in &words {
+            if let Some(name) = kind(word).and_then(|found| found.name) {
+                assert!(
+                    schema::kind(name).is_some() || ["box", "disk"].contains(&name),
+                    "{word} leads to {name}"
+                );
+            }
+        }
+    }
+}
