@@ -5,6 +5,7 @@
 
 use crate::folder::Folder;
 use rt_lang::diagnostic::{Code, Diagnostic};
+use rt_lang::files::FilePath;
 use rt_lang::mend::mend;
 use rt_lang::report::{self, Style};
 use rt_lang::source::{Source, Sources};
@@ -29,9 +30,13 @@ fn slips_are_reported() {
             let mut sources = Sources::default();
             let set = text.lines().next().and_then(|line| line.strip_prefix("// set: "));
             let set = set.map(|set| vec![set.to_string()]).unwrap_or_default();
-            let id = sources.add(Source::new(path.file_name().unwrap().to_str().unwrap(), text));
+            let source = Source::new(path.file_name().unwrap().to_str().unwrap(), text);
+            // Cases share files with others: the root is the folder of all of them.
+            let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases");
+            let below = path.strip_prefix(root.canonicalize().unwrap()).or(path.strip_prefix(&root)).unwrap();
+            let id = sources.add(source.at(FilePath::root("").join(below.to_str().unwrap()).unwrap()));
             let options = Options { set, ..Options::default() };
-            let compiled = compile(&Folder::of(path), &mut sources, id, &options);
+            let compiled = compile(&Folder(root), &mut sources, id, &options);
             let codes: BTreeSet<&str> = compiled.diagnostics.iter().map(|d| d.code.as_str()).collect();
             if let Some(code) =
                 name.split('-').next().filter(|word| Code::ALL.iter().any(|c| c.as_str() == *word))

@@ -8,6 +8,7 @@ mod block;
 mod declared;
 mod errors;
 mod expr;
+mod fields;
 mod functions;
 mod make;
 mod order;

@@ -120,10 +120,10 @@ impl Evaluator<'_> {
         let value = zero_of(&param.declared, value);
         let range = param.range.as_ref().map(|[low, high]| [self.expr(low), self.expr(high)]);
         let value = match (&value, range) {
-            (Value::Number(x), Some([Value::Number(low), Value::Number(high)]))
+            (&Value::Number(x), Some([Value::Number(low), Value::Number(high)]))
                 if !(low..=high).contains(&x) =>
             {
-                self.report(errors::param_out_of_range(param, [low, high], *x, span))
+                self.report(errors::param_out_of_range(param, [low, high], x, span))
             }
             _ => value,
         };

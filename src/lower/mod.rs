@@ -260,7 +260,9 @@ impl<'a> Lowering<'a> {
 
     /// What is left out is not drawn, and still has its place for those that aim at it.
     fn hidden(&mut self, index: usize, thing: &Thing) {
-        if let (true, Ok(Reach::Box(bounds))) = (thing.made.is_sound(), measure(self.things, thing, self.meshes)) {
+        if thing.made.is_sound()
+            && let Ok(Reach::Box(bounds)) = measure(self.things, thing, self.meshes)
+        {
             self.extents[index] = Extent::Lamp(bounds);
         }
     }
