@@ -88,6 +88,11 @@ codes! {
 }
 
 impl Code {
+    /// What it is about, as one word: `unused_name`.
+    pub fn name(self) -> String {
+        self.title().chars().map(|c| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect()
+    }
+
     /// Error or warning, from the letter.
     pub fn severity(self) -> Severity {
         if self.as_str().starts_with('W') { Severity::Warning } else { Severity::Error }

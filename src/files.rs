@@ -10,6 +10,11 @@ use std::sync::Arc;
 pub trait Files: Sync {
     /// The bytes of a file, at most `most` of them. The same path gives the same bytes throughout one compilation.
     fn read(&self, path: &FilePath, most: usize) -> Result<Arc<[u8]>, FileError>;
+
+    /// What a person calls a file.
+    fn name(&self, path: &FilePath) -> String {
+        path.to_string()
+    }
 }
 
 /// A path below the root folder: names joined by `/`, without `.`, `..` or a leading `/`.

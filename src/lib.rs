@@ -12,10 +12,11 @@
 //! |---|---|---|
 //! | [`span`], [`source`], [`diagnostic`] | places, texts, what is said of them | terminals |
 //! | [`files`] | what a scene may read | the disk |
-//! | [`asset`] | the bytes of pictures to values | where the bytes came from |
+//! | [`asset`] | the bytes of pictures and meshes to values | where the bytes came from |
 //! | [`math`], [`color`], [`units`], [`develop`] | arithmetic with the same bits everywhere | the language |
 //! | [`schema`] | the one table of kinds and fields | how they are checked or drawn |
 //! | [`syntax`] | text to tree; never fails | names, types, the scene |
+//! | [`import`] | the trees of all files that a scene is made of | names, types |
 //! | [`check`] | tree to typed program: names, types, units | values |
 //! | [`eval`] | program to things, each with the chain of uses that made it | the renderer |
 //! | [`lower`] | things to scene: defaults, cameras, transforms, radiometry | text |
@@ -28,6 +29,7 @@
 //! | [`report`] | diagnostics to text, for a person or a program | what they are about |
 
 pub mod asset;
+mod allow;
 pub mod check;
 pub mod color;
 pub mod develop;
@@ -35,6 +37,7 @@ pub mod diagnostic;
 pub mod eval;
 pub mod explain;
 pub mod files;
+pub mod import;
 pub mod inventory;
 pub mod lower;
 pub mod math;
@@ -49,11 +52,13 @@ pub mod span;
 pub mod syntax;
 pub mod units;
 
+use check::Setting;
 use diagnostic::{Code, Diagnostic};
-use eval::Origins;
+use eval::{Limits, Origins, Thing, Things};
 use files::Files;
+use import::Imported;
 use inventory::Inventory;
-use lower::{Overrides, Places};
+use lower::{Meshes, Overrides, Places};
 use scene::Scene;
 use source::Sources;
 use span::{SourceId, Span};
@@ -73,26 +78,71 @@ pub struct Compiled {
     pub inventory: Inventory,
     /// Where settings stand that only a finished picture can judge.
     places: Places,
+    /// The source that was compiled.
+    main: SourceId,
+    /// What the source says is expected.
+    allows: Vec<check::Allow>,
 }
 
-/// Compiles a source to a scene: parse, check, evaluate, lower. Every stage runs, also after errors, so that
-/// one run reports all that is wrong. `files` is what the source may read.
-pub fn compile(sources: &Sources, id: SourceId, overrides: &Overrides, files: &dyn Files) -> Compiled {
-    let text = &sources.get(id).text;
-    let (tree, mut diagnostics) = syntax::parse(id, text);
-    let (program, found) = check::check(&tree, text);
+/// What a compilation may be told from outside.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// What stands in place of the file's settings of camera and render blocks.
+    pub overrides: Overrides,
+    /// Values for params of the file, each as `name=value`.
+    pub set: Vec<String>,
+    /// What evaluating may take.
+    pub limits: Limits,
+}
+
+/// Bytes of stack for checking and evaluating: expressions within parts within calls go deep.
+const STACK: usize = 256 << 20;
+
+/// Compiles a source to a scene: parse it and what it imports, check, evaluate, lower. Every stage runs, also after
+/// errors, so that one run reports all that is wrong. `files` is what the source may read; what it imports is added
+/// to `sources`, and so is each setting.
+pub fn compile(files: &dyn Files, sources: &mut Sources, main: SourceId, options: &Options) -> Compiled {
+    let imported = import::import(files, sources, main);
+    let (settings, slips) = check::settings(sources, &options.set);
+    let sources = &*sources;
+    let work = move || stages(files, sources, main, imported, settings, slips, options);
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work);
+        let thread = thread.expect("the system gives a process one more thread");
+        thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
+}
+
+fn stages(
+    files: &dyn Files,
+    sources: &Sources,
+    main: SourceId,
+    mut imported: Imported,
+    settings: Vec<Setting>,
+    slips: Vec<Diagnostic>,
+    options: &Options,
+) -> Compiled {
+    let mut diagnostics = std::mem::take(&mut imported.diagnostics);
+    diagnostics.extend(slips);
+    let (program, found) = check::check(files, sources, &imported, &settings);
+    // The trees are large.
+    drop(imported);
     diagnostics.extend(found);
     if diagnostic::any_errors(&diagnostics) {
         // What could not be understood may use any name.
         diagnostics.retain(|diagnostic| diagnostic.code != Code::W0106);
     }
-    let (things, found) = eval::eval(&program);
+    let meshes = Meshes::new(files, sources);
+    let measure = |things: &Things, thing: &Thing| lower::measure(things, thing, &meshes);
+    let (things, found) = eval::eval(&program, options.limits, &measure);
     diagnostics.extend(found);
-    let lowered = lower::lower(&things, overrides, files);
+    let lowered = lower::lower(&things, &options.overrides, files, sources, &meshes);
     diagnostics.extend(lowered.diagnostics);
     if !diagnostic::any_errors(&diagnostics) {
-        diagnostics.extend(lower::nothing_to_see(&things));
+        diagnostics.extend(lower::nothing_to_see(&things, main));
     }
+    let unused = allow::allow(&program.allows, &mut diagnostics);
+    diagnostics.extend(unused);
     diagnostics.sort_by_key(|diagnostic| (diagnostic.primary.span, diagnostic.code));
     // What is wrong in a prototype is one error, however often it is used.
     diagnostics.dedup_by(|again, first| {
@@ -101,10 +151,12 @@ pub fn compile(sources: &Sources, id: SourceId, overrides: &Overrides, files: &d
     let scene = lowered.scene.filter(|_| !diagnostic::any_errors(&diagnostics));
     Compiled {
         scene,
-        inventory: Inventory::of(&things),
+        inventory: Inventory::of(&program, sources, &things),
         origins: things.origins,
         diagnostics,
         notes: lowered.notes,
+        main,
+        allows: program.allows,
         places: lowered.places,
     }
 }
@@ -116,15 +168,23 @@ impl Compiled {
             scene: None,
             origins: Origins::default(),
             inventory: Inventory::default(),
-            diagnostics: vec![diagnostic],
             notes: vec![],
+            main: diagnostic.primary.span.source,
+            diagnostics: vec![diagnostic],
+            allows: vec![],
             places: Places::default(),
         }
     }
 
-    /// What a finished picture gives cause to say.
-    pub fn judge(&self, finding: &Finding) -> Diagnostic {
-        let start = Span::new(SourceId(0), 0, 0);
+    /// What a finished picture gives cause to say, unless the source allows it.
+    pub fn judge(&self, finding: &Finding) -> Option<Diagnostic> {
+        let mut said = vec![self.warning(finding)];
+        allow::allow(&self.allows, &mut said);
+        said.pop()
+    }
+
+    fn warning(&self, finding: &Finding) -> Diagnostic {
+        let start = Span::new(self.main, 0, 0);
         match *finding {
             Finding::Noisy { noise, samples } => {
                 let place = self.places.noise.unwrap_or(start);

@@ -1,5 +1,6 @@
 //! Source texts, and where lines begin in them.
 
+use crate::files::FilePath;
 use crate::span::{SourceId, Span};
 
 /// One source text with the name a person knows it by.
@@ -9,16 +10,25 @@ pub struct Source {
     pub name: String,
     /// The whole text.
     pub text: String,
+    /// Where it lies below the root folder; what it names is found from there.
+    pub path: FilePath,
     line_starts: Vec<u32>,
 }
 
 impl Source {
-    /// Takes a text in, and finds its lines.
+    /// Takes a text in, and finds its lines. It lies in the root folder; [`Source::at`] puts it elsewhere.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Source {
         let text = text.into();
         let ends = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n');
         let line_starts = std::iter::once(0).chain(ends.map(|(at, _)| at as u32 + 1)).collect();
-        Source { name: name.into(), text, line_starts }
+        let name = name.into();
+        let path = FilePath::root(name.rsplit(['/', '\\']).next().unwrap_or("scene.rt"));
+        Source { name, text, path, line_starts }
+    }
+
+    /// Says where it lies below the root folder.
+    pub fn at(self, path: FilePath) -> Source {
+        Source { path, ..self }
     }
 
     /// Line and column of a byte, both from 1; the column counts characters.
@@ -52,6 +62,11 @@ impl Sources {
         SourceId(self.all.len() as u32 - 1)
     }
 
+    /// Says where a source lies below the root folder.
+    pub fn place(&mut self, id: SourceId, path: FilePath) {
+        self.all[id.0 as usize].path = path;
+    }
+
     /// The source with this id, which came from [`Sources::add`] of this table.
     pub fn get(&self, id: SourceId) -> &Source {
         &self.all[id.0 as usize]
@@ -59,6 +74,6 @@ impl Sources {
 
     /// The text of a span.
     pub fn text(&self, span: Span) -> &str {
-        self.get(span.source).text.get(span.range()).unwrap_or("")
+        self.all.get(span.source.0 as usize).and_then(|source| source.text.get(span.range())).unwrap_or("")
     }
 }

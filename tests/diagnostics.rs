@@ -1,17 +1,19 @@
 //! Every slip, and what is said of it: `cases/diagnostics/*.rt`, with what a terminal shows beside them.
 //!
-//! A case is named after the code it is about, which is then the only one it gives.
+//! A case is named after the code it is about, which is then the only one it gives. One of several files is a folder
+//! with a `main.rt`. A first line `// set: name=value` is given as by `--set`.
 
 use crate::folder::Folder;
-use rt_lang::compile;
 use rt_lang::diagnostic::{Code, Diagnostic};
-use rt_lang::lower::Overrides;
+use rt_lang::files::FilePath;
 use rt_lang::mend::mend;
 use rt_lang::report::{self, Style};
 use rt_lang::source::{Source, Sources};
 use rt_lang::span::SourceId;
+use rt_lang::{Options, compile};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
+use std::path::Path;
 
 #[test]
 fn slips_are_reported() {
@@ -21,12 +23,20 @@ fn slips_are_reported() {
     settings.set_snapshot_path("cases/diagnostics");
     let wrong = RefCell::new(vec![]);
     settings.bind(|| {
-        insta::glob!("cases/diagnostics/*.rt", |path| {
-            let name = path.file_name().unwrap().to_str().unwrap();
+        let case = |path: &Path| {
+            let named = if path.ends_with("main.rt") { path.parent().unwrap() } else { path };
+            let name = named.file_name().unwrap().to_str().unwrap();
             let text = std::fs::read_to_string(path).unwrap();
             let mut sources = Sources::default();
-            let id = sources.add(Source::new(name, text));
-            let compiled = compile(&sources, id, &Overrides::default(), &Folder::of(path));
+            let set = text.lines().next().and_then(|line| line.strip_prefix("// set: "));
+            let set = set.map(|set| vec![set.to_string()]).unwrap_or_default();
+            let source = Source::new(path.file_name().unwrap().to_str().unwrap(), text);
+            // Cases share files with others: the root is the folder of all of them.
+            let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases");
+            let below = path.strip_prefix(root.canonicalize().unwrap()).or(path.strip_prefix(&root)).unwrap();
+            let id = sources.add(source.at(FilePath::root("").join(below.to_str().unwrap()).unwrap()));
+            let options = Options { set, ..Options::default() };
+            let compiled = compile(&Folder(root), &mut sources, id, &options);
             let codes: BTreeSet<&str> = compiled.diagnostics.iter().map(|d| d.code.as_str()).collect();
             if let Some(code) =
                 name.split('-').next().filter(|word| Code::ALL.iter().any(|c| c.as_str() == *word))
@@ -44,7 +54,9 @@ fn slips_are_reported() {
                 shown.push_str(&format!("note: {note}\n"));
             }
             insta::assert_snapshot!("report", shown);
-        });
+        };
+        insta::glob!("cases/diagnostics/*.rt", case);
+        insta::glob!("cases/diagnostics/*/main.rt", case);
     });
     assert!(wrong.borrow().is_empty(), "other codes than the name says:\n{}", wrong.borrow().join("\n"));
 }
@@ -88,7 +100,8 @@ fn what_is_offered_as_a_mend_mends() {
 fn given(text: &str) -> Vec<Diagnostic> {
     let mut sources = Sources::default();
     let id = sources.add(Source::new("case.rt", text));
-    compile(&sources, id, &Overrides::default()).diagnostics
+    let folder = Folder(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/cases/diagnostics").into());
+    compile(&folder, &mut sources, id, &Options::default()).diagnostics
 }
 
 /// Each code the compiler can give has a case, here or among those of the syntax. E0009 is found before there is

@@ -4,10 +4,9 @@
 use rt_lang::check::{self, Function};
 use rt_lang::diagnostic::{Code, Severity};
 use rt_lang::files::{FileError, FilePath, Files};
-use rt_lang::lower::Overrides;
 use rt_lang::schema::{Category, Field, FieldType, KINDS, KindId, PLACED, Preset};
 use rt_lang::source::{Source, Sources};
-use rt_lang::{color, compile, units};
+use rt_lang::{Options, color, compile, units};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -220,7 +219,7 @@ impl Files for AnyPicture {
 fn compiles(name: &str, text: &str) {
     let mut sources = Sources::default();
     let id = sources.add(Source::new(name, text));
-    let compiled = compile(&sources, id, &Overrides::default(), &AnyPicture);
+    let compiled = compile(&AnyPicture, &mut sources, id, &Options::default());
     assert!(compiled.diagnostics.is_empty(), "{name}:\n{text}\n{:#?}", compiled.diagnostics);
     assert!(compiled.scene.is_some(), "{name}");
 }

@@ -17,6 +17,17 @@ pub fn tree(text: &str, file: &File) -> String {
     dump.out
 }
 
+/// A tree without its places: what must not change where a text is only laid out anew.
+pub fn shape(text: &str, file: &File) -> String {
+    let mut dump = Dump { text, out: String::new(), indent: 0 };
+    dump.body(&file.body);
+    // What a line covers begins with two spaces and the first «, which no name holds.
+    dump.out
+        .lines()
+        .map(|line| line.split("  «").next().unwrap_or(""))
+        .fold(String::new(), |all, line| all + line + "\n")
+}
+
 /// The tree of one expression.
 pub fn expression(text: &str, expr: &Expr) -> String {
     let mut dump = Dump { text, out: String::new(), indent: 0 };
@@ -170,7 +181,8 @@ impl Dump<'_> {
                 self.inside(|dump| dump.expr("", value));
             }
             ExprKind::Call { function, arguments } => {
-                line(format!("call {}", function.text));
+                let names = std::iter::once(&function.first).chain(&function.rest);
+                line(format!("call {}", names.map(|name| name.text.as_str()).collect::<Vec<_>>().join(".")));
                 self.inside(|dump| dump.arguments(arguments));
             }
             ExprKind::List(values) => {

@@ -7,7 +7,12 @@ mod command;
 mod diagnostics;
 mod documents;
 mod folder;
+mod language;
 mod dump;
+mod format;
+mod fuzz;
+#[path = "../fuzz/invariants.rs"]
+mod invariants;
 mod parse;
 mod pictures;
 mod scenes;

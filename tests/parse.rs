@@ -19,7 +19,7 @@ fn codes(text: &str) -> Vec<Code> {
 }
 
 /// Every case, with its path.
-fn case_files() -> Vec<(std::path::PathBuf, String)> {
+pub fn case_files() -> Vec<(std::path::PathBuf, String)> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/cases/syntax");
     let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "rt"));
@@ -297,7 +297,7 @@ fn any_broken(body: &Body) -> bool {
 }
 
 /// Pieces of the language, put together at random.
-fn pieces() -> impl Strategy<Value = String> {
+pub fn pieces() -> impl Strategy<Value = String> {
     let piece = prop::sample::select(vec![
         "sphere", "group", "let", "material", "and", "not", "radius", "a", "in", "to", "{", "}", "(", ")",
         "[", "]", "<", ">", ":", "=", ";", ",", "\n", " ", "+", "-", "*", "/", "|>", ".", "..", "==", "1",
@@ -309,7 +309,7 @@ fn pieces() -> impl Strategy<Value = String> {
 }
 
 /// A case with some of its bytes cut out, doubled or replaced.
-fn mutated() -> impl Strategy<Value = String> {
+pub fn mutated() -> impl Strategy<Value = String> {
     let texts: Vec<String> =
         case_files().into_iter().map(|(_, text)| text).filter(|text| text.len() < 2000).collect();
     let cut = (any::<prop::sample::Index>(), 0..8_usize, pieces());

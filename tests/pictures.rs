@@ -6,11 +6,11 @@
 use crate::folder::Folder;
 use insta::internals::SnapshotContents;
 use insta::{Comparator, Snapshot};
-use rt_lang::compile;
 use rt_lang::lower::Overrides;
 use rt_lang::output::{Depth, Facts, Format, Picture, encode};
 use rt_lang::render::{Control, Shown, Tracer, Window};
 use rt_lang::source::{Source, Sources};
+use rt_lang::{Options, compile};
 use std::path::{Path, PathBuf};
 
 #[test]
@@ -44,7 +44,8 @@ fn render(path: &Path, overrides: &Overrides) -> Vec<u8> {
     let mut sources = Sources::default();
     let text = std::fs::read_to_string(path).unwrap();
     let id = sources.add(Source::new(path.display().to_string(), text));
-    let compiled = compile(&sources, id, overrides, &Folder::of(path));
+    let options = Options { overrides: overrides.clone(), ..Options::default() };
+    let compiled = compile(&Folder::of(path), &mut sources, id, &options);
     let scene = compiled.scene.unwrap_or_else(|| panic!("{}: {:#?}", path.display(), compiled.diagnostics));
     let tracer = Tracer::new(&scene);
     let prepass = tracer.prepass();

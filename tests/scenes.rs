@@ -1,11 +1,10 @@
 //! What a text becomes: numbers of the scene that follow from it.
 
 use crate::folder::Folder;
-use rt_lang::compile;
-use rt_lang::lower::Overrides;
 use rt_lang::math::cos;
 use rt_lang::scene::{Light, Projection, Scene};
 use rt_lang::source::{Source, Sources};
+use rt_lang::{Options, compile};
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -14,7 +13,7 @@ fn scene(text: &str) -> Scene {
     let mut sources = Sources::default();
     let id = sources.add(Source::new("scene.rt", text));
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases/pictures");
-    let compiled = compile(&sources, id, &Overrides::default(), &Folder(folder));
+    let compiled = compile(&Folder(folder), &mut sources, id, &Options::default());
     compiled.scene.unwrap_or_else(|| panic!("{text}: {:#?}", compiled.diagnostics))
 }
 

@@ -25,6 +25,8 @@ pub struct Mesh {
     /// Indices of positions, counterclockwise seen from outside.
     triangles: Vec<[u32; 3]>,
     closed: bool,
+    /// Least and greatest coordinates of its triangles.
+    extent: [DVec3; 2],
     hash: blake3::Hash,
 }
 
@@ -84,7 +86,11 @@ impl Mesh {
             false => smoothed(&positions, &triangles, &places),
         };
         let uvs = if uvs.iter().all(|uv| uv.is_finite()) { uvs } else { vec![] };
-        let mut mesh = Mesh { positions, normals, uvs, triangles, closed, hash: blake3::Hash::from([0; 32]) };
+        let corners = || triangles.iter().flatten().map(|&corner| positions[corner as usize]);
+        let extent =
+            [corners().fold(DVec3::INFINITY, DVec3::min), corners().fold(DVec3::NEG_INFINITY, DVec3::max)];
+        let hash = blake3::Hash::from([0; 32]);
+        let mut mesh = Mesh { positions, normals, uvs, triangles, closed, extent, hash };
         mesh.hash = mesh.digest();
         Ok(mesh)
     }
@@ -118,6 +124,11 @@ impl Mesh {
     /// Whether it bounds a solid: each edge is shared by two triangles that are oriented alike.
     pub fn is_closed(&self) -> bool {
         self.closed
+    }
+
+    /// Least and greatest coordinates.
+    pub fn extent(&self) -> [DVec3; 2] {
+        self.extent
     }
 
     /// Of all that it holds.

@@ -2,6 +2,7 @@
 
 pub mod image;
 pub mod mesh;
+pub mod table;
 
 pub use image::Image;
 pub use mesh::Mesh;

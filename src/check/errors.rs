@@ -1,15 +1,20 @@
 //! One function for each thing that can be wrong with names, things and fields; types and units have a file of
 //! their own.
 
+mod declared;
+mod query;
 mod types;
 
+pub(super) use declared::*;
+pub(super) use query::*;
 pub(super) use types::*;
 
-use super::types::{Type, describe_wanted, list};
+use super::block::{path_span, path_text};
+use super::types::{Kind, Making, Type, describe_wanted, list};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::schema::{self, Category, Field, FieldType, KindId, Preset, familiar};
 use crate::span::Span;
-use crate::syntax::ast::{Keyword, Name};
+use crate::syntax::ast::{Keyword, Name, Path};
 use crate::units;
 
 /// The longest name that a guess is made for.
@@ -77,10 +82,21 @@ fn is_side(unit: &str) -> bool {
         .is_some_and(|rest| !rest.is_empty() && rest.bytes().all(|b| b.is_ascii_digit()))
 }
 
-pub(super) fn field_at_top_level(name: &Name) -> Diagnostic {
-    Diagnostic::new(Code::E0301, format!("`{}` belongs to no thing", name.text), name.span)
-        .at("a field stands inside `{}`")
-        .help("a file holds things such as `sphere { … }`, and definitions such as `let r = 5cm`")
+pub(super) fn unknown_name(name: &Name, candidates: &[&str]) -> Diagnostic {
+    unknown(Code::E0101, "name", name, candidates)
+}
+
+/// A field among statements: at the top level of a file, or in a branch.
+pub(super) fn field_of_nothing(name: &Name, inside: &str) -> Diagnostic {
+    let diagnostic = Diagnostic::new(Code::E0301, format!("`{}` belongs to no thing", name.text), name.span)
+        .at("a field stands inside `{}`");
+    match inside {
+        "a file" => diagnostic
+            .help("a file holds things such as `sphere { … }`, and definitions such as `let r = 5cm`"),
+        word => diagnostic.help(format!(
+            "the body of `{word}` holds things; inside a thing choose the value: `radius: if … then … else …`"
+        )),
+    }
 }
 
 pub(super) fn duplicate(name: &Name, first: Option<&Name>) -> Diagnostic {
@@ -138,11 +154,12 @@ pub(super) fn cycle(names: &[&Name]) -> Diagnostic {
     diagnostic.help(format!("break the cycle {}", path.join(" → ")))
 }
 
-pub(super) fn unused(name: &Name, ty: Type) -> Diagnostic {
+pub(super) fn unused(name: &Name, ty: &Type) -> Diagnostic {
     let drawn = match ty {
-        Type::Made(kind, _) if kind.get().category != Category::Material => {
+        Type::Made(making) if making.kind.category() != Category::Material => {
             format!("; a prototype is drawn by `{} {{}}`", name.text)
         }
+        Type::Part(_) | Type::File(_) => format!("; it is drawn by `{} {{}}`", name.text),
         _ => String::new(),
     };
     Diagnostic::new(Code::W0106, format!("`{}` is never used", name.text), name.span)
@@ -150,7 +167,7 @@ pub(super) fn unused(name: &Name, ty: Type) -> Diagnostic {
         .help(format!("use it, or remove it{drawn}"))
 }
 
-pub(super) fn wrong_keyword(keyword: Keyword, name: &Name, value: Span, ty: Type) -> Diagnostic {
+pub(super) fn wrong_keyword(keyword: Keyword, name: &Name, value: Span, ty: &Type) -> Diagnostic {
     let (message, help) = match keyword {
         Keyword::Let => {
             (format!("`let {}` names a material", name.text), format!("write `material {} = …`", name.text))
@@ -163,13 +180,14 @@ pub(super) fn wrong_keyword(keyword: Keyword, name: &Name, value: Span, ty: Type
     Diagnostic::new(Code::E0201, message, value).at(ty.describe()).help(help)
 }
 
-pub(super) fn not_a_kind(name: &Name, ty: Type) -> Diagnostic {
+pub(super) fn not_a_kind(name: &Name, ty: &Type) -> Diagnostic {
     let help = match ty {
-        Type::Thing(kind) => format!(
+        Type::Thing(Making { kind: Kind::BuiltIn(kind), .. }) => format!(
             "to make several alike, name a prototype: `let {} = {} {{ … }}`",
             name.text,
             kind.get().name
         ),
+        Type::Thing(_) => format!("to make several alike, name a prototype: `let {} = … {{ … }}`", name.text),
         _ => "a kind or a prototype stands before `{`".to_string(),
     };
     Diagnostic::new(
@@ -181,58 +199,72 @@ pub(super) fn not_a_kind(name: &Name, ty: Type) -> Diagnostic {
     .help(help)
 }
 
-pub(super) fn material_drawn(name: &Name) -> Diagnostic {
+pub(super) fn material_drawn(path: &Path) -> Diagnostic {
+    let name = path_text(path);
     Diagnostic::new(
         Code::E0305,
-        format!("`{}` is a material, which is not drawn by itself", name.text),
-        name.span,
+        format!("`{name}` is a material, which is not drawn by itself"),
+        path_span(path),
     )
     .at("no surface here")
-    .help(format!("name it with `material NAME = {} {{ … }}`, or give it to a shape's `material`", name.text))
+    .help(format!("name it with `material NAME = {name} {{ … }}`, or give it to a shape's `material`"))
 }
 
-pub(super) fn block_inside(name: &Name, kind: KindId) -> Diagnostic {
+pub(super) fn block_inside(path: &Path, kind: KindId) -> Diagnostic {
     let text = kind.get().name;
     let holds = |outer: &&schema::Kind| outer.fields.iter().any(|field| field.ty == FieldType::Part(text));
     let help = match schema::KINDS.iter().find(holds) {
         Some(outer) => format!("put it into the `{}`, or at the top level", outer.name),
         None => "move it to the top level".to_string(),
     };
-    Diagnostic::new(Code::E0305, format!("`{text}` is no part of a group"), name.span)
+    Diagnostic::new(Code::E0305, format!("`{text}` is no part of a group"), path_span(path))
         .at("not here")
         .help(help)
 }
 
-pub(super) fn cannot_hold(name: &Name, outer: KindId) -> Diagnostic {
-    let help = match outer.get().category {
+pub(super) fn cannot_hold(inner: &Path, outer: &str, category: Category) -> Diagnostic {
+    let help = match category {
         Category::Shape | Category::Light => "put both into a `group { … }`".to_string(),
-        _ => format!("end the `{}` before it", outer.get().name),
+        _ => format!("end the `{outer}` before it"),
     };
-    Diagnostic::new(Code::E0301, format!("`{}` cannot hold things", outer.get().name), name.span)
-        .at(format!("`{}` does not belong inside", name.text))
+    Diagnostic::new(Code::E0301, format!("`{outer}` cannot hold things"), path_span(inner))
+        .at(format!("`{}` does not belong inside", path_text(inner)))
         .help(help)
 }
 
-pub(super) fn named_part(kind: &Name, name: &Name, outer: KindId) -> Diagnostic {
-    let message = format!("the `{}` of a `{}` has no name", kind.text, outer.get().name);
+pub(super) fn cannot_hold_statement(span: Span, outer: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0301, format!("`{outer}` cannot hold statements"), span)
+        .at("does not belong inside")
+        .help("a field's value may be chosen: `radius: if … then … else …`; what holds things is a `group { … }`")
+}
+
+pub(super) fn named_part(kind: &Path, name: &Name, outer: &str) -> Diagnostic {
+    let kind = path_text(kind);
+    let message = format!("the `{kind}` of a `{outer}` has no name");
     Diagnostic::new(Code::E0301, message, name.span)
         .at("a name here")
-        .help(format!("write `{} {{ … }}`", kind.text))
+        .help(format!("write `{kind} {{ … }}`"))
         .fix(name.span, "")
 }
 
-pub(super) fn unknown_field(kind: KindId, name: &Name, free: &[&str], all: &[&str]) -> Diagnostic {
-    let diagnostic = Diagnostic::new(
-        Code::E0301,
-        format!("`{}` has no field `{}`", kind.get().name, name.text),
-        name.span,
-    )
-    .at("unknown field");
-    let here =
-        familiar::field(kind, &name.text).filter(|here| here.name.is_none_or(|name| all.contains(&name)));
+pub(super) fn unknown_field(
+    kind: &str,
+    category: Category,
+    name: &Name,
+    free: &[&str],
+    all: &[&str],
+) -> Diagnostic {
+    let diagnostic =
+        Diagnostic::new(Code::E0301, format!("`{kind}` has no field `{}`", name.text), name.span)
+            .at("unknown field");
+    let here = familiar::field(kind, category, &name.text);
+    let here = here.filter(|here| here.name.is_none_or(|name| all.contains(&name)));
     match (here, closest(&name.text, free)) {
         (Some(here), _) => with_familiar(diagnostic, here, name.span, free),
         (None, Some(guess)) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
+        (None, None) if all.is_empty() => {
+            diagnostic.help("what a material of any kind has is not known here; name one of them")
+        }
         (None, None) => diagnostic.help(format!("its fields are {}", quoted(all))),
     }
 }

@@ -9,8 +9,20 @@ use crate::syntax::ast::{self, BinaryOp, ExprKind as Tree, Name, UnaryOp};
 use crate::units;
 
 impl Checker<'_> {
-    /// Finds the type of an expression, wherever it stands.
+    /// Finds the type of an expression, wherever it stands. It is a value: the name of a part, file or function
+    /// alone is none.
     pub(super) fn infer(&mut self, expr: &ast::Expr) -> (Expr, Type) {
+        let (found, ty) = self.infer_name(expr);
+        if matches!(ty, Type::Part(_) | Type::File(_) | Type::Function(_)) {
+            self.report(errors::not_a_value(self.text(expr.span), expr.span, &ty));
+            return (Expr::invalid(expr.span), Type::Invalid);
+        }
+        (found, ty)
+    }
+
+    /// The same, where the name of a file may stand to be looked into.
+    pub(super) fn infer_name(&mut self, expr: &ast::Expr) -> (Expr, Type) {
+        self.nodes += 1;
         let span = expr.span;
         let (kind, ty) = match &expr.kind {
             Tree::Invalid => (ExprKind::Invalid, Type::Invalid),
@@ -36,24 +48,26 @@ impl Checker<'_> {
                 None => (ExprKind::Invalid, Type::Invalid),
             },
             Tree::Name(name) => match self.lookup(name) {
-                Some(found) => found,
+                Some(found) => (found.kind, found.ty),
                 None => {
                     let name = Name { text: name.clone(), span };
-                    let diagnostic = errors::unknown(Code::E0101, "name", &name, &self.value_names());
+                    let diagnostic = errors::unknown_name(&name, &self.value_names());
                     self.report(diagnostic);
                     (ExprKind::Invalid, Type::Invalid)
                 }
             },
             Tree::Tuple(parts) => self.tuple(parts, span),
-            Tree::Paren(inner) => return self.infer(inner),
+            Tree::List(items) => self.list(items),
+            Tree::Paren(inner) => return self.infer_name(inner),
             Tree::Call { function, arguments } => self.call(function, arguments, span),
             Tree::Member { value, member } => self.member(value, member),
+            Tree::Index { value, index } => self.index(value, index),
+            Tree::If { condition, then, otherwise } => self.choice(condition, then, otherwise),
             Tree::Construct(construct) => {
-                let (make, ty) = self.make(construct);
+                let (make, ty) = self.make(construct, None);
                 (ExprKind::Make(Box::new(make)), ty)
             }
             Tree::Unary { operator, operand } => self.unary(*operator, operand),
-            Tree::List(_) | Tree::Index { .. } | Tree::If { .. } => (ExprKind::Invalid, Type::Invalid),
             Tree::Binary { operator, at, left, right } => self.binary(*operator, *at, left, right),
         };
         let kind = if ty == Type::Invalid { ExprKind::Invalid } else { kind };
@@ -81,7 +95,7 @@ impl Checker<'_> {
             Type::Tuple(count, element) if element.fits(units::NONE) => Type::Tuple(count, quantity),
             Type::Invalid => return (ExprKind::Invalid, Type::Invalid),
             _ => {
-                self.report(errors::unit_on_quantity(unit, value.span, ty));
+                self.report(errors::unit_on_quantity(unit, value.span, &ty));
                 return (ExprKind::Invalid, Type::Invalid);
             }
         };
@@ -101,7 +115,8 @@ impl Checker<'_> {
         }
         let mut joined = Element::Zero;
         for ty in &types {
-            let Type::Scalar(element) = *ty else { continue };
+            let Type::Scalar(element) = ty else { continue };
+            let element = *element;
             // The first component with a dimension sets it for all, wherever it stands.
             joined = match joined.join(element) {
                 Some(both) => both,
@@ -111,11 +126,11 @@ impl Checker<'_> {
         }
         let mut sound = true;
         for (expr, ty) in exprs.iter().zip(&types) {
-            match *ty {
-                Type::Scalar(element) if joined.join(element).is_some() => {}
+            match ty {
+                Type::Scalar(element) if joined.join(*element).is_some() => {}
                 Type::Scalar(element) => {
                     sound = false;
-                    self.report(errors::component(expr.span, self.text(expr.span), element, joined));
+                    self.report(errors::component(expr.span, self.text(expr.span), *element, joined));
                 }
                 other => {
                     sound = false;
@@ -126,21 +141,6 @@ impl Checker<'_> {
         match sound {
             true => (ExprKind::Tuple(exprs), Type::Tuple(parts.len(), joined)),
             false => (ExprKind::Invalid, Type::Invalid),
-        }
-    }
-
-    fn member(&mut self, value: &ast::Expr, member: &Name) -> (ExprKind, Type) {
-        let (value, ty) = self.infer(value);
-        let axis = ["x", "y", "z"].iter().position(|axis| *axis == member.text);
-        match (ty, axis) {
-            (Type::Invalid, _) => (ExprKind::Invalid, Type::Invalid),
-            (Type::Tuple(count, element), Some(axis)) if axis < count => {
-                (ExprKind::Component { value: Box::new(value), axis }, Type::Scalar(element))
-            }
-            _ => {
-                self.report(errors::no_member(member, ty));
-                (ExprKind::Invalid, Type::Invalid)
-            }
         }
     }
 
@@ -156,7 +156,7 @@ impl Checker<'_> {
                     UnaryOp::Negate => ("-", "a number"),
                     UnaryOp::Not => ("not", "true or false"),
                 };
-                self.report(errors::operand(symbol, wanted, operand.span, ty));
+                self.report(errors::operand(symbol, wanted, operand.span, &ty));
             }
             return (ExprKind::Invalid, Type::Invalid);
         }
@@ -175,8 +175,11 @@ impl Checker<'_> {
         if a == Type::Invalid || b == Type::Invalid {
             return (ExprKind::Invalid, Type::Invalid);
         }
-        let operands = [(left.span, a), (right.span, b)];
-        let ty = match self.result(operator, at, a, b, operands) {
+        if operator == BinaryOp::To {
+            return self.to(left, right, [a, b]);
+        }
+        let operands = [(left.span, &a), (right.span, &b)];
+        let ty = match self.result(operator, at, operands) {
             Some(ty) => ty,
             None => return (ExprKind::Invalid, Type::Invalid),
         };
@@ -185,21 +188,15 @@ impl Checker<'_> {
     }
 
     /// The type of an operation; none where it is wrong, and was reported.
-    fn result(
-        &mut self,
-        operator: BinaryOp,
-        at: Span,
-        a: Type,
-        b: Type,
-        operands: [(Span, Type); 2],
-    ) -> Option<Type> {
+    fn result(&mut self, operator: BinaryOp, at: Span, operands: [(Span, &Type); 2]) -> Option<Type> {
         use BinaryOp::*;
         let symbol = operator.symbol();
         match operator {
-            Pipe => self.both(symbol, "a placement", operands, |ty| ty == Type::Transform)?,
-            Or | And => self.both(symbol, "true or false", operands, |ty| ty == Type::Bool)?,
+            Pipe => self.both(symbol, "a placement", operands, |ty| *ty == Type::Transform)?,
+            Or | And => self.both(symbol, "true or false", operands, |ty| *ty == Type::Bool)?,
             _ => {}
         }
+        let [a, b] = [operands[0].1, operands[1].1];
         match (operator, a, b) {
             (Pipe, ..) => Some(Type::Transform),
             (Or | And, ..) => Some(Type::Bool),
@@ -207,29 +204,29 @@ impl Checker<'_> {
             | (Equal | NotEqual, Type::Text, Type::Text)
             | (Equal | NotEqual, Type::Color, Type::Color) => Some(Type::Bool),
             (Equal | NotEqual, Type::Tuple(m, x), Type::Tuple(n, y)) if m == n => {
-                self.join(symbol, at, x, y, operands).map(|_| Type::Bool)
+                self.join(symbol, at, *x, *y, operands).map(|_| Type::Bool)
             }
             (
                 Equal | NotEqual | Less | LessEqual | Greater | GreaterEqual,
                 Type::Scalar(x),
                 Type::Scalar(y),
-            ) => self.join(symbol, at, x, y, operands).map(|_| Type::Bool),
+            ) => self.join(symbol, at, *x, *y, operands).map(|_| Type::Bool),
             (Add | Subtract, Type::Color, Type::Color) => Some(Type::Color),
             (Add | Subtract, Type::Scalar(x), Type::Scalar(y)) => {
-                self.join(symbol, at, x, y, operands).map(|element| Type::Scalar(whole(element)))
+                self.join(symbol, at, *x, *y, operands).map(|element| Type::Scalar(whole(element)))
             }
             (Add | Subtract, Type::Tuple(m, x), Type::Tuple(n, y)) if m == n => {
-                self.join(symbol, at, x, y, operands).map(|element| Type::Tuple(m, whole(element)))
+                self.join(symbol, at, *x, *y, operands).map(|element| Type::Tuple(*m, whole(element)))
             }
             (Multiply, Type::Color, Type::Color) => Some(Type::Color),
             (Multiply | Divide, Type::Color, Type::Scalar(x)) if x.fits(units::NONE) => Some(Type::Color),
             (Multiply, Type::Scalar(x), Type::Color) if x.fits(units::NONE) => Some(Type::Color),
             (Multiply | Divide, Type::Scalar(x), Type::Scalar(y)) => {
-                self.product(operator, at, x, y).map(Type::Scalar)
+                self.product(operator, at, *x, *y).map(Type::Scalar)
             }
             (Multiply | Divide, Type::Tuple(n, x), Type::Scalar(y))
             | (Multiply, Type::Scalar(x), Type::Tuple(n, y)) => {
-                self.product(operator, at, x, y).map(|element| Type::Tuple(n, element))
+                self.product(operator, at, *x, *y).map(|element| Type::Tuple(*n, element))
             }
             _ => {
                 self.report(errors::operands(symbol, at, operands));
@@ -242,12 +239,12 @@ impl Checker<'_> {
         &mut self,
         symbol: &str,
         wanted: &str,
-        operands: [(Span, Type); 2],
-        fits: impl Fn(Type) -> bool,
+        operands: [(Span, &Type); 2],
+        fits: impl Fn(&Type) -> bool,
     ) -> Option<()> {
-        let wrong: Vec<_> = operands.into_iter().filter(|(_, ty)| !fits(*ty)).collect();
+        let wrong: Vec<_> = operands.into_iter().filter(|(_, ty)| !fits(ty)).collect();
         for (span, ty) in &wrong {
-            self.report(errors::operand(symbol, wanted, *span, *ty));
+            self.report(errors::operand(symbol, wanted, *span, ty));
         }
         wrong.is_empty().then_some(())
     }
@@ -259,7 +256,7 @@ impl Checker<'_> {
         at: Span,
         x: Element,
         y: Element,
-        operands: [(Span, Type); 2],
+        operands: [(Span, &Type); 2],
     ) -> Option<Element> {
         let joined = x.join(y);
         if joined.is_none() {

@@ -2,9 +2,9 @@
 
 use super::types::{Element, NUMBER, Type};
 use super::{Checker, Expr, ExprKind, errors, textures};
-use crate::diagnostic::Code;
+use crate::schema::Category;
 use crate::span::Span;
-use crate::syntax::ast::{Argument, Name};
+use crate::syntax::ast::Argument;
 use crate::units::{self, ANGLE, LENGTH, TEMPERATURE};
 
 macro_rules! functions {
@@ -74,7 +74,7 @@ functions! {
     Exp "exp" "exp(number)",
     /// Natural logarithm.
     Log "log" "log(number)",
-    /// Length of a triple.
+    /// Length of a triple; of a list, how many items it has.
     Length "length" "length(v)",
     /// The vector of length 1 in the same direction.
     Normalize "normalize" "normalize(v)",
@@ -82,6 +82,14 @@ functions! {
     Dot "dot" "dot(a, b)",
     /// Vector product.
     Cross "cross" "cross(a, b)",
+    /// The whole numbers from a, or 0, up to but not including b.
+    Range "range" "range(b) or range(a, b)",
+    /// So many values, evenly from a to b, both included; of quantities and triples.
+    Linspace "linspace" "linspace(a, b, count)",
+    /// A number from 0 up to but not including 1, which looks random and is always the same for the same numbers.
+    Rand "rand" "rand(i, j, …)",
+    /// The box around a thing: its `.min`, `.max`, `.center` and `.size`.
+    Bounds "bounds" "bounds(thing)",
     /// A linear colour.
     Rgb "rgb" "rgb(r, g, b)",
     /// A display-referred colour, as colour pickers show it; each channel from 0 to 1.
@@ -112,15 +120,15 @@ pub fn by_name(name: &str) -> Option<Function> {
 }
 
 impl Checker<'_> {
-    /// Checks a call.
-    pub(super) fn call(&mut self, name: &Name, arguments: &[Argument], span: Span) -> (ExprKind, Type) {
+    /// Checks a call of a built-in function.
+    pub(super) fn call_built_in(
+        &mut self,
+        function: Function,
+        arguments: &[Argument],
+        span: Span,
+    ) -> (ExprKind, Type) {
         let (values, types): (Vec<Expr>, Vec<Type>) =
             arguments.iter().map(|argument| self.infer(&argument.value)).unzip();
-        let Some(function) = by_name(&name.text) else {
-            let names: Vec<&str> = Function::ALL.iter().map(|function| function.name()).collect();
-            self.report(errors::unknown(Code::E0101, "function", name, &names));
-            return (ExprKind::Invalid, Type::Invalid);
-        };
         if let Some(parameters) = textures::parameters(function) {
             let values = values.into_iter().zip(types).collect();
             return self.texture(function, parameters, arguments, values, span);
@@ -173,13 +181,16 @@ impl Checker<'_> {
         use Function::*;
         let counts: &[usize] = match function {
             Sin | Cos | Tan | Asin | Acos | Sqrt | Abs | Floor | Ceil | Round | Exp | Log | Length
-            | Normalize | Blackbody | Turn => &[1],
+            | Normalize | Blackbody | Turn | Bounds => &[1],
             Atan2 | Mod | Pow | Dot | Cross => &[2],
-            Clamp | Mix | Rgb | Srgb | Hsv => &[3],
+            Clamp | Mix | Rgb | Srgb | Hsv | Linspace => &[3],
             Scale | Move => &[1, 3],
-            Min | Max | Checker | Stripes | Noise | Image => &[],
+            Range => &[1, 2],
+            Min | Max | Rand | Checker | Stripes | Noise | Image => &[],
         };
-        if counts.is_empty() && values.len() < 2 || !counts.is_empty() && !counts.contains(&values.len()) {
+        let least = if function == Rand { 1 } else { 2 };
+        if counts.is_empty() && values.len() < least || !counts.is_empty() && !counts.contains(&values.len())
+        {
             self.report(errors::argument_count(function, span, values.len()));
             return None;
         }
@@ -195,7 +206,7 @@ impl Checker<'_> {
             Hsv => arguments.each(&[ANGLE, number, number], Type::Color),
             Blackbody => arguments.each(&[TEMPERATURE], Type::Color),
             Turn => arguments.each(&[ANGLE], Type::Transform),
-            Scale => arguments.each(&[number, number, number][..values.len()], Type::Transform),
+            Scale => arguments.each(&[number; 3][..values.len()], Type::Transform),
             Move if values.len() == 3 => arguments.each(&[LENGTH; 3], Type::Transform),
             Move => {
                 arguments.triple(0, Some(LENGTH))?;
@@ -211,7 +222,15 @@ impl Checker<'_> {
             Mix => arguments.mix(),
             // By their parameters.
             Checker | Stripes | Noise | Image => None,
+            Length if matches!(types[0], Type::List(_)) => Some(Type::Scalar(Element::Int)),
             Length => arguments.triple(0, None).map(Type::Scalar),
+            Range => arguments.whole(0..values.len()).map(|()| Type::list(Type::Scalar(Element::Int))),
+            Linspace => arguments.linspace(),
+            Rand => {
+                let wanted = vec![number; values.len()];
+                arguments.each(&wanted, Type::Scalar(NUMBER))
+            }
+            Bounds => arguments.bounded(),
             Normalize => arguments.triple(0, None).map(|_| Type::Tuple(3, NUMBER)),
             Dot | Cross => {
                 let (a, b) = (arguments.triple(0, None)?, arguments.triple(1, None)?);
@@ -244,7 +263,7 @@ impl Arguments<'_, '_, '_> {
                 sound = false;
                 let span = self.values[index].span;
                 let text = self.checker.text(span);
-                self.checker.report(errors::argument(self.function, *dim, span, text, self.types[index]));
+                self.checker.report(errors::argument(self.function, *dim, span, text, &self.types[index]));
             }
         }
         sound.then_some(gives)
@@ -256,18 +275,18 @@ impl Arguments<'_, '_, '_> {
         for index in range {
             let span = self.values[index].span;
             let Type::Scalar(element) = self.types[index] else {
-                let ty = self.types[index];
+                let ty = &self.types[index];
                 self.checker.report(errors::argument(self.function, units::NONE, span, "", ty));
                 return None;
             };
             joined = match joined.join(element) {
                 Some(both) => both,
                 None => {
-                    let first = (self.values[0].span, Type::Scalar(joined));
+                    let first = (self.values[0].span, &Type::Scalar(joined));
                     self.checker.report(errors::sum(
                         self.function.name(),
                         span,
-                        [first, (span, self.types[index])],
+                        [first, (span, &self.types[index])],
                     ));
                     return None;
                 }
@@ -276,10 +295,49 @@ impl Arguments<'_, '_, '_> {
         Some(joined)
     }
 
+    /// The arguments are whole numbers.
+    fn whole(&mut self, range: std::ops::Range<usize>) -> Option<()> {
+        let mut sound = true;
+        for index in range {
+            let ty = &self.types[index];
+            if !matches!(ty, Type::Scalar(element) if element.is_int()) {
+                sound = false;
+                let span = self.values[index].span;
+                self.checker.report(errors::whole_argument(self.function, span, ty));
+            }
+        }
+        sound.then_some(())
+    }
+
+    fn linspace(&mut self) -> Option<Type> {
+        self.whole(2..3)?;
+        let plain = |element: Element| if element.is_int() { NUMBER } else { element };
+        match (&self.types[0], &self.types[1]) {
+            (Type::Tuple(m, x), Type::Tuple(n, y)) if m == n && x.join(*y).is_some() => {
+                x.join(*y).map(|element| Type::list(Type::Tuple(*m, plain(element))))
+            }
+            _ => self.joined(0..2).map(|element| Type::list(Type::Scalar(plain(element)))),
+        }
+    }
+
+    /// The argument is something with bounds.
+    fn bounded(&mut self) -> Option<Type> {
+        let ty = &self.types[0];
+        let bounded = match ty {
+            Type::Thing(making) => making.kind.is_placed() || making.kind.category() == Category::Light,
+            Type::Made(making) => making.kind.is_placed(),
+            _ => false,
+        };
+        if !bounded {
+            self.checker.report(errors::no_bounds(self.values[0].span, ty));
+        }
+        bounded.then_some(Type::Bounds)
+    }
+
     fn root(&mut self, element: Element) -> Option<Type> {
         let root = element.dim().root();
         if root.is_none() {
-            self.checker.report(errors::root(self.values[0].span, self.types[0]));
+            self.checker.report(errors::root(self.values[0].span, &self.types[0]));
         }
         root.map(|dim| Type::Scalar(Element::Quantity(dim)))
     }
@@ -287,22 +345,22 @@ impl Arguments<'_, '_, '_> {
     fn mix(&mut self) -> Option<Type> {
         let t_fits = matches!(self.types[2], Type::Scalar(element) if element.fits(units::NONE));
         if !t_fits {
-            let (span, ty) = (self.values[2].span, self.types[2]);
+            let (span, ty) = (self.values[2].span, &self.types[2]);
             let text = self.checker.text(span);
             self.checker.report(errors::argument(self.function, units::NONE, span, text, ty));
             return None;
         }
         let plain = |element: Element| if element.dim() == units::NONE { NUMBER } else { element };
-        match (self.types[0], self.types[1]) {
+        match (&self.types[0], &self.types[1]) {
             (Type::Color, Type::Color) => Some(Type::Color),
-            (Type::Tuple(m, x), Type::Tuple(n, y)) if m == n && x.join(y).is_some() => {
-                x.join(y).map(|element| Type::Tuple(m, plain(element)))
+            (Type::Tuple(m, x), Type::Tuple(n, y)) if m == n && x.join(*y).is_some() => {
+                x.join(*y).map(|element| Type::Tuple(*m, plain(element)))
             }
             (Type::Scalar(_), Type::Scalar(_)) => {
                 self.joined(0..2).map(|element| Type::Scalar(plain(element)))
             }
             _ => {
-                let operands = [(self.values[0].span, self.types[0]), (self.values[1].span, self.types[1])];
+                let operands = [(self.values[0].span, &self.types[0]), (self.values[1].span, &self.types[1])];
                 self.checker.report(errors::operands("mix", self.values[1].span, operands));
                 None
             }
@@ -311,8 +369,8 @@ impl Arguments<'_, '_, '_> {
 
     /// The argument is a triple, of this dimension where one is wanted; gives what it counts.
     fn triple(&mut self, index: usize, dim: Option<units::Dim>) -> Option<Element> {
-        match self.types[index] {
-            Type::Tuple(3, element) if dim.is_none_or(|dim| element.fits(dim)) => Some(element),
+        match &self.types[index] {
+            Type::Tuple(3, element) if dim.is_none_or(|dim| element.fits(dim)) => Some(*element),
             ty => {
                 let span = self.values[index].span;
                 self.checker.report(errors::triple_wanted(self.function, span, ty, dim));

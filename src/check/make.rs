@@ -1,40 +1,30 @@
 //! Things: their kind, their fields, and what must hold between these.
 
-use super::types::{Element, FieldSet, Type};
-use super::{Base, Checker, Expr, ExprKind, Make, errors, scope::Item};
-use crate::diagnostic::Diagnostic;
-use crate::schema::{Category, Field, FieldType, KindId, Preset, Rule, familiar};
+use super::block::{path_span, path_text};
+use super::program::{Around, Base, Expr, ExprKind, FieldPlace, Make, Written};
+use super::scope::{Item, Place, built_in};
+use super::types::{Element, FieldSet, Kind, Making, Type};
+use super::{Checker, errors};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::schema::{self, Category, Field, FieldType, KindId, PLACED, Preset, Rule, familiar};
 use crate::span::Span;
-use crate::syntax::ast::{self, Entry, ExprKind as Tree, Name, StatementKind};
+use crate::syntax::ast::{self, Entry, ExprKind as Tree, Name, StatementKind as Statement};
 use crate::units;
+use std::sync::Arc;
 
 impl Checker<'_> {
-    /// A thing in statement position.
-    pub(super) fn drawn(&mut self, construct: &ast::Construct, top_level: bool) -> (Expr, Type) {
-        let (make, ty) = self.make(construct);
-        let expr = Expr { kind: ExprKind::Make(Box::new(make)), span: construct.span };
-        let Type::Made(kind, given) = ty else { return (Expr::invalid(construct.span), Type::Invalid) };
-        match kind.get().category {
-            Category::Material => self.report(errors::material_drawn(&construct.kind.first)),
-            Category::Block if !top_level => self.report(errors::block_inside(&construct.kind.first, kind)),
-            _ => self.complete(kind, given, construct.kind.first.span),
-        }
-        (expr, Type::Thing(kind))
-    }
-
     /// A thing, in the picture or not. What is missing is for whoever uses it to say.
-    pub(super) fn make(&mut self, construct: &ast::Construct) -> (Make, Type) {
-        let (base, known) = self.kind_of(&construct.kind.first);
-        let holds = known.is_some_and(|(kind, _)| kind.get().category == Category::Group);
+    pub(super) fn make(&mut self, construct: &ast::Construct, name: Option<&Name>) -> (Make, Type) {
+        self.nodes += 1;
+        let (base, known) = self.kind_of(&construct.kind);
+        let holds = known.is_some_and(|making| making.kind == Kind::BuiltIn(schema::group::KIND));
         let Sorted { items, parts, misplaced } =
-            self.sort_entries(&construct.body.entries, known.map(|(kind, _)| kind), holds);
-        let block = (!items.is_empty()).then(|| self.open(&items, false));
-        let mut make = Make { base, fields: vec![], block, span: construct.span };
-        let ty = match known {
-            Some((kind, inherited)) => {
-                let given = self.fields(&mut make, kind, inherited, &construct.body.entries, &parts);
-                Type::Made(kind, given)
-            }
+            self.sort_entries(&construct.body.entries, known.map(|making| making.kind), holds);
+        let place = if holds { Place::Group } else { Place::Fields };
+        let mut block = (!items.is_empty()).then(|| self.open(&items, place));
+        let mut make = Unfinished { fields: vec![], given: FieldSet::default() };
+        match known {
+            Some(making) => self.fields(&mut make, making, &construct.body.entries, &parts),
             None => {
                 // The kind is unknown, yet what stands inside can be looked at.
                 for entry in &construct.body.entries {
@@ -44,50 +34,127 @@ impl Checker<'_> {
                         self.infer(&field.value);
                     }
                 }
-                Type::Invalid
+            }
+        }
+        for construct in misplaced {
+            self.make(construct, None);
+        }
+        let inside = (block.is_some() && holds).then(|| self.keep_names());
+        if block.is_some() {
+            self.close(block.as_mut());
+        }
+        let ty = match (&base, known) {
+            (Base::Invalid, _) | (_, None) => Type::Invalid,
+            (_, Some(making)) => {
+                Type::Made(Making { given: make.given, inside: inside.or(making.inside), ..making })
             }
         };
-        for construct in misplaced {
-            self.make(construct);
+        make.fields.sort_by_key(|(place, _)| *place);
+        let written = Arc::new(Written {
+            name: name.map(|name| name.text.clone()),
+            span: construct.span,
+            fields: make.fields.iter().map(|(_, value)| value.span).collect(),
+        });
+        (Make { base, fields: make.fields, block, inside, written }, ty)
+    }
+
+    /// What stands before `{`: what the thing begins as.
+    fn kind_of(&mut self, path: &ast::Path) -> (Base, Option<Making>) {
+        let name = &path.first;
+        if let Some(kind) = schema::kind(&name.text) {
+            return match path.rest.first() {
+                None => (Base::Kind(kind), Some(built_in(kind))),
+                Some(inner) => {
+                    self.report(errors::nothing_inside(inner, &name.text));
+                    (Base::Invalid, Some(built_in(kind)))
+                }
+            };
         }
-        if make.block.is_some() {
-            self.close();
+        let Some(found) = self.lookup(&name.text) else {
+            let diagnostic = errors::unknown(Code::E0101, "kind", name, &self.kind_names());
+            self.report(diagnostic);
+            // What stands inside is looked at as if the kind had been spelt right.
+            let built_ins: Vec<&str> = schema::KINDS.iter().map(|kind| kind.name).collect();
+            let guess = errors::closest(&name.text, &built_ins).and_then(schema::kind);
+            return (Base::Invalid, guess.map(built_in));
+        };
+        let mut ty = found.ty;
+        let mut value = found.kind;
+        let mut around = Around::Up(found.up);
+        for inner in &path.rest {
+            let Type::File(file) = ty else {
+                if ty != Type::Invalid {
+                    self.report(errors::path_as_kind(inner, &ty));
+                }
+                return (Base::Invalid, None);
+            };
+            let Some(exported) = self.exported(file, &inner.text) else {
+                self.report_not_in_file(file, inner, "kind");
+                return (Base::Invalid, None);
+            };
+            value = ExprKind::FileName { file, slot: exported.slot };
+            ty = exported.ty.clone();
+            around = Around::File(file);
         }
-        match make.base {
-            Base::Invalid => (make, Type::Invalid),
-            _ => (make, ty),
+        match ty {
+            Type::Made(making) => {
+                let prototype = Expr { kind: value, span: path_span(path) };
+                (Base::Prototype(prototype), Some(making))
+            }
+            Type::Part(part) => (Base::Part { part, around }, Some(Making::of(Kind::Part(part)))),
+            Type::File(file) => {
+                let part = self.program.files[file.index()].part;
+                (Base::Part { part, around: Around::Nothing }, Some(Making::of(Kind::Part(part))))
+            }
+            Type::Invalid => (Base::Invalid, None),
+            ty => {
+                let name = Name { text: path_text(path).into(), span: path_span(path) };
+                self.report(errors::not_a_kind(&name, &ty));
+                (Base::Invalid, None)
+            }
         }
     }
 
     /// Splits the statements of a body: definitions and members on the one hand, things that are fields (a
     /// lens in its camera) on the other.
-    fn sort_entries<'t>(&mut self, entries: &'t [Entry], kind: Option<KindId>, holds: bool) -> Sorted<'t> {
+    fn sort_entries<'t>(&mut self, entries: &'t [Entry], kind: Option<Kind>, holds: bool) -> Sorted<'t> {
         let Sorted { mut items, mut parts, mut misplaced } = Sorted::default();
         for entry in entries {
             let Entry::Statement(statement) = entry else {
                 // A broken entry with the name of a field is that field.
                 if let Entry::Broken(broken) = entry
                     && let Some(name) = &broken.name
-                    && kind.is_none_or(|kind| kind.field_index(&name.text).is_none())
+                    && kind.is_none_or(|kind| self.find_field(kind, &name.text).is_none())
                 {
                     items.push(Item::Broken(broken));
                 }
                 continue;
             };
             match &statement.kind {
-                StatementKind::Thing { construct, name } if !holds => {
-                    let field = kind.and_then(|kind| self.part_field(kind, &construct.kind.first));
+                Statement::Thing { construct, name } if !holds => {
+                    let built_in = match kind {
+                        Some(Kind::BuiltIn(kind)) => Some(kind),
+                        _ => None,
+                    };
+                    let field = built_in.and_then(|kind| self.part_field(kind, &construct.kind));
                     match (kind, field, name) {
                         (_, Some(index), None) => parts.push((index, construct)),
                         (Some(kind), Some(index), Some(name)) => {
-                            self.report(errors::named_part(&construct.kind.first, name, kind));
+                            self.report(errors::named_part(&construct.kind, name, &self.kind_name(kind)));
                             parts.push((index, construct));
                         }
                         (Some(kind), None, _) => {
-                            self.report(errors::cannot_hold(&construct.kind.first, kind));
+                            let (name, category) = (self.kind_name(kind), kind.category());
+                            self.report(errors::cannot_hold(&construct.kind, &name, category));
                             misplaced.push(construct);
                         }
                         (None, ..) => {}
+                    }
+                }
+                Statement::For { .. } | Statement::If { .. } | Statement::Assert { .. } if !holds => {
+                    if let Some(kind) = kind {
+                        let name = self.kind_name(kind);
+                        self.report(errors::cannot_hold_statement(statement.span, &name));
                     }
                 }
                 _ => items.push(Item::Statement(statement)),
@@ -97,83 +164,129 @@ impl Checker<'_> {
     }
 
     /// The field of `kind` that a statement of this kind, or of a prototype of it, inside fills.
-    fn part_field(&mut self, kind: KindId, inner: &Name) -> Option<usize> {
-        let inner = match self.lookup(&inner.text) {
-            Some((_, Type::Made(kind, _))) => kind.get().name,
-            _ => &inner.text,
+    fn part_field(&mut self, kind: KindId, inner: &ast::Path) -> Option<usize> {
+        let found = self.lookup(&inner.first.text).map(|found| found.ty);
+        let inner = match found {
+            Some(Type::Made(Making { kind: Kind::BuiltIn(kind), .. })) => kind.get().name,
+            _ => &inner.first.text,
         };
         kind.fields().position(|field| matches!(field.ty, FieldType::Part(part) if part == inner))
     }
 
     fn fields(
         &mut self,
-        make: &mut Make,
-        kind: KindId,
-        inherited: FieldSet,
+        make: &mut Unfinished,
+        making: Making,
         entries: &[Entry],
         parts: &[(usize, &ast::Construct)],
-    ) -> FieldSet {
-        let mut places: Vec<Option<Span>> = vec![None; kind.field_count()];
+    ) {
+        let kind = making.kind;
+        let mut places: Vec<Option<Span>> = vec![None; self.field_count(kind)];
         for entry in entries {
             let (name, value) = match entry {
                 Entry::Field(field) => (&field.name, Some(&field.value)),
                 Entry::Broken(ast::Broken { name: Some(name), .. }) => (name, None),
                 _ => continue,
             };
-            let Some(index) = kind.field_index(&name.text) else {
+            let Some(field) = self.find_field(kind, &name.text) else {
                 if value.is_some() {
                     self.unknown_field(kind, name, &places);
                 }
                 // A misspelt field counts as given.
-                if let Some(index) = probable_field(kind, name, &places) {
-                    places[index] = Some(name.span);
-                    make.fields.push((index, Expr::invalid(name.span)));
+                if let Some(field) = self.probable_field(kind, name, &places) {
+                    places[self.bit(kind, field)] = Some(name.span);
+                    make.fields.push((field, Expr::invalid(name.span)));
                 }
                 if let Some(value) = value.filter(|value| !matches!(value.kind, Tree::Name(_))) {
                     self.infer(value);
                 }
                 continue;
             };
-            if let Some(first) = places[index] {
+            let bit = self.bit(kind, field);
+            if let Some(first) = places[bit] {
                 self.report(errors::repeated(name, first));
                 if let Some(value) = value {
-                    self.field_value(kind.field(index), value);
+                    self.value_of_field(kind, field, value);
                 }
                 continue;
             }
-            places[index] = Some(name.span);
+            places[bit] = Some(name.span);
             let checked = match value {
-                Some(value) => self.field_value(kind.field(index), value),
+                Some(value) => self.value_of_field(kind, field, value),
                 None => Expr::invalid(name.span),
             };
-            make.fields.push((index, checked));
+            make.fields.push((field, checked));
         }
         for (index, construct) in parts {
+            let name = &construct.kind.first;
             if let Some(first) = places[*index] {
-                self.report(errors::repeated(&construct.kind.first, first));
+                self.report(errors::repeated(name, first));
                 continue;
             }
-            places[*index] = Some(construct.kind.first.span);
-            let (part, ty) = self.make(construct);
-            if let Type::Made(part, given) = ty {
-                self.complete(part, given, construct.kind.first.span);
+            places[*index] = Some(name.span);
+            let (part, ty) = self.make(construct, None);
+            if let Type::Made(part) = ty {
+                self.complete(part, name.span);
             }
-            make.fields.push((*index, Expr { kind: ExprKind::Make(Box::new(part)), span: construct.span }));
+            let kind = ExprKind::Make(Box::new(part));
+            make.fields.push((FieldPlace::Index(*index), Expr { kind, span: construct.span }));
         }
         let mut own = FieldSet::default();
-        places
-            .iter()
-            .enumerate()
-            .filter(|(_, place)| place.is_some())
-            .for_each(|(index, _)| own.insert(index));
-        let given = own.union(inherited);
-        self.conflicts(kind, given, &places);
-        given
+        for (place, _) in &make.fields {
+            match (kind, place) {
+                (Kind::Part(_), FieldPlace::Placed(index)) => own.insert(*index),
+                (Kind::Part(_), _) => {}
+                (_, place) => own.insert(self.bit(kind, *place)),
+            }
+        }
+        make.given = own.union(making.given);
+        if let Kind::BuiltIn(kind) = kind {
+            self.conflicts(kind, make.given, &places);
+        }
     }
 
-    fn unknown_field(&mut self, kind: KindId, name: &Name, places: &[Option<Span>]) {
-        let all: Vec<&str> = kind.fields().map(|field| field.name).collect();
-        self.report(errors::unknown_field(kind, name, &free_fields(kind, places), &all));
+    fn value_of_field(&mut self, kind: Kind, place: FieldPlace, value: &ast::Expr) -> Expr {
+        match (kind, place) {
+            (Kind::BuiltIn(kind), FieldPlace::Index(index)) => self.field_value(kind.field(index), value),
+            (Kind::Part(part), FieldPlace::Param(index)) => {
+                let param = &self.program.part(part).params[index];
+                let (name, declared) = (param.name.clone(), param.declared.clone());
+                let checked = self.declared_value(&name, &declared, value);
+                let range = &self.program.part(part).params[index].range;
+                if let Some(diagnostic) =
+                    range.as_ref().and_then(|range| self.literal_outside(&name, &checked, range))
+                {
+                    self.report(diagnostic);
+                    return Expr::invalid(value.span);
+                }
+                checked
+            }
+            (_, FieldPlace::Placed(index)) => self.field_value(&PLACED[index], value),
+            _ => Expr::invalid(value.span),
+        }
+    }
+
+    fn unknown_field(&mut self, kind: Kind, name: &Name, places: &[Option<Span>]) {
+        let all = self.field_names(kind);
+        let all: Vec<&str> = all.iter().map(String::as_str).collect();
+        let free: Vec<&str> =
+            all.iter().zip(places).filter(|(_, place)| place.is_none()).map(|(name, _)| *name).collect();
+        self.report(errors::unknown_field(&self.kind_name(kind), kind.category(), name, &free, &all));
+    }
+
+    /// The field that an unknown name probably means.
+    fn probable_field(&self, kind: Kind, name: &Name, places: &[Option<Span>]) -> Option<FieldPlace> {
+        let all = self.field_names(kind);
+        let free: Vec<&str> = all
+            .iter()
+            .zip(places)
+            .filter(|(_, place)| place.is_none())
+            .map(|(name, _)| name.as_str())
+            .collect();
+        let here =
+            familiar::field(&self.kind_name(kind), kind.category(), &name.text).and_then(|here| here.name);
+        let here = here.filter(|name| free.contains(name));
+        here.or_else(|| errors::closest(&name.text, &free)).and_then(|guess| self.find_field(kind, guess))
     }
 
     /// Fields that exclude each other. Reported where this body gives at least one of them.
@@ -199,58 +312,62 @@ impl Checker<'_> {
     }
 
     /// Everything that must be given is. `place` is where the thing is used.
-    fn complete(&mut self, kind: KindId, given: FieldSet, place: Span) {
+    pub(super) fn complete(&mut self, making: Making, place: Span) {
+        let Kind::BuiltIn(kind) = making.kind else { return };
         for (index, field) in kind.fields().enumerate() {
-            if field.default == Preset::Required && !given.has(index) {
+            if field.default == Preset::Required && !making.given.has(index) {
                 self.report(errors::missing(kind, field, place));
             }
         }
-        if let Some(diagnostic) = broken_rule(kind, given, place) {
+        if let Some(diagnostic) = broken_rule(kind, making.given, place) {
             self.report(diagnostic);
         }
     }
 
     /// The value of a field, in the light of what the field wants.
     pub(super) fn field_value(&mut self, field: &'static Field, value: &ast::Expr) -> Expr {
-        if let Tree::Name(name) = &value.kind {
-            if let Some(word) = find_word(field.ty, name) {
-                return Expr { kind: ExprKind::Word(word), span: value.span };
+        match &value.kind {
+            Tree::Name(name) => {
+                if let Some(word) = find_word(field.ty, name) {
+                    return Expr { kind: ExprKind::Word(word), span: value.span };
+                }
+                let words = words(field.ty);
+                if !words.is_empty() && !self.is_declared(name) {
+                    let name = Name { text: name.clone(), span: value.span };
+                    self.report(errors::unknown_word(field, &name, &words));
+                    return Expr::invalid(value.span);
+                }
             }
-            let words = words(field.ty);
-            if !words.is_empty() && !self.scopes.iter().any(|scope| scope.knows(name)) {
-                let name = Name { text: name.clone(), span: value.span };
-                self.report(errors::unknown_word(field, &name, &words));
-                return Expr::invalid(value.span);
+            // The words reach into the branches.
+            Tree::If { condition, then, otherwise } => {
+                let condition = self.condition("if", condition);
+                let [then, otherwise] = [then, otherwise].map(|branch| self.field_value(field, branch));
+                let kind = ExprKind::If(Box::new([condition, then, otherwise]));
+                return Expr { kind, span: value.span };
             }
+            Tree::Paren(inner) => return self.field_value(field, inner),
+            _ => {}
         }
         let (checked, ty) = self.infer(value);
         if ty == Type::Invalid {
             return Expr::invalid(value.span);
         }
-        if !accepts(field.ty, ty) {
+        if !accepts(field.ty, &ty) {
             let text = self.text(value.span);
-            self.report(errors::mismatch(field, value.span, text, ty));
+            self.report(errors::mismatch(field.name, field.ty, value.span, text, &ty));
             return Expr::invalid(value.span);
         }
-        if let Type::Made(kind, given) = ty {
-            self.complete(kind, given, value.span);
+        if let Type::Made(making) = ty {
+            self.complete(making, value.span);
         }
         checked
     }
 }
 
-/// The names of the fields that are not given yet.
-fn free_fields(kind: KindId, places: &[Option<Span>]) -> Vec<&'static str> {
-    let free = kind.fields().zip(places).filter(|(_, place)| place.is_none());
-    free.map(|(field, _)| field.name).collect()
-}
-
-/// The field that an unknown name probably means.
-fn probable_field(kind: KindId, name: &Name, places: &[Option<Span>]) -> Option<usize> {
-    let free = free_fields(kind, places);
-    let here =
-        familiar::field(kind, &name.text).and_then(|here| here.name).filter(|name| free.contains(name));
-    here.or_else(|| errors::closest(&name.text, &free)).and_then(|guess| kind.field_index(guess))
+/// What a body has given so far.
+struct Unfinished {
+    fields: Vec<(FieldPlace, Expr)>,
+    given: FieldSet,
 }
 
 /// The statements of a body by what they are.
@@ -297,25 +414,29 @@ fn broken_rule(kind: KindId, given: FieldSet, place: Span) -> Option<Diagnostic>
 }
 
 /// Whether a value of a type can stand in a field.
-pub(super) fn accepts(field: FieldType, ty: Type) -> bool {
+pub(super) fn accepts(field: FieldType, ty: &Type) -> bool {
     match (field, ty) {
         (_, Type::Invalid) => true,
         (FieldType::Scalar(dim), Type::Scalar(element)) => element.fits(dim),
         (FieldType::Int, Type::Scalar(element)) => element.is_int(),
         (FieldType::Bool, Type::Bool) => true,
-        (FieldType::Color, Type::Color) => true,
         (FieldType::Paint, Type::Color | Type::Texture) => true,
         (FieldType::Text, Type::Text) => true,
+        (FieldType::Color, Type::Color) => true,
         (FieldType::Tuple(_, _), Type::Scalar(Element::Zero)) => true,
-        (FieldType::Tuple(count, dim), Type::Tuple(given, element)) => count == given && element.fits(dim),
-        (FieldType::IntTuple(count), Type::Tuple(given, element)) => count == given && element.is_int(),
+        (FieldType::Tuple(count, dim), Type::Tuple(given, element)) => count == *given && element.fits(dim),
+        (FieldType::IntTuple(count), Type::Tuple(given, element)) => count == *given && element.is_int(),
         (FieldType::Transform, Type::Transform) => true,
-        (FieldType::Made(category), Type::Made(kind, _)) => kind.get().category == category,
-        (FieldType::Part(name), Type::Made(kind, _)) => kind.get().name == name,
-        (FieldType::Target, Type::Thing(kind)) => {
-            matches!(kind.get().category, Category::Shape | Category::Group | Category::Light)
+        (FieldType::Made(category), Type::Made(making)) => making.kind.category() == category,
+        (FieldType::Part(name), Type::Made(Making { kind: Kind::BuiltIn(kind), .. })) => {
+            kind.get().name == name
         }
-        (FieldType::Named(name), Type::Thing(kind)) => kind.get().name == name,
+        (FieldType::Target, Type::Thing(making)) => {
+            matches!(making.kind.category(), Category::Shape | Category::Group | Category::Light)
+        }
+        (FieldType::Named(name), Type::Thing(Making { kind: Kind::BuiltIn(kind), .. })) => {
+            kind.get().name == name
+        }
         (FieldType::OneOf(types), ty) => types.iter().any(|field| accepts(*field, ty)),
         _ => false,
     }

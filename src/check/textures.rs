@@ -50,11 +50,17 @@ impl Checker<'_> {
                 self.report(errors::argument_count(function, span, arguments.len()));
                 return INVALID;
             };
-            if !accepts(parameters[index].ty, ty) {
+            if !accepts(parameters[index].ty, &ty) {
                 let text = self.text(value.span);
-                self.report(errors::mismatch(&parameters[index], value.span, text, ty));
+                self.report(errors::mismatch(
+                    parameters[index].name,
+                    parameters[index].ty,
+                    value.span,
+                    text,
+                    &ty,
+                ));
             }
-            sound &= ty != Type::Invalid && accepts(parameters[index].ty, ty);
+            sound &= ty != Type::Invalid && accepts(parameters[index].ty, &ty);
             given[index] = Some(value);
         }
         let missing =
@@ -78,7 +84,7 @@ fn default(field: &'static Field, span: Span) -> Expr {
     let Preset::Value(text) = field.default else { return Expr::invalid(span) };
     // The place is never shown: a test holds that no default has an error.
     let (tree, _) = syntax::parse_expression(SourceId(u32::MAX), text);
-    let (value, _) = check_value(field, &tree, text);
+    let (value, _) = check_value(field, &tree);
     Expr { span, ..value }
 }
 
@@ -92,7 +98,7 @@ mod tests {
             let Preset::Value(text) = field.default else { continue };
             let (tree, slips) = syntax::parse_expression(SourceId(0), text);
             assert_eq!(slips, [], "{text}");
-            assert_eq!(check_value(field, &tree, text).1, [], "{text}");
+            assert_eq!(check_value(field, &tree).1, [], "{text}");
         }
     }
 }

@@ -86,6 +86,10 @@ pub enum Command {
     /// Prints the manual page.
     #[command(after_help = tools::MAN_EXAMPLES)]
     Man(Man),
+    /// Lays scenes out in the one way they are written: what they mean, their comments and their groups of lines
+    /// stay as they are.
+    #[command(after_help = FMT_EXAMPLES)]
+    Fmt(Fmt),
 }
 
 const BUILD_EXAMPLES: &str = "\
@@ -100,6 +104,33 @@ const DEVELOP_EXAMPLES: &str = "\
 Examples:
   rtc develop balls.exr -o bright.png --exposure 1.5
   rtc develop balls.exr -o film.png --tonemap agx --bits 16";
+
+const FMT_EXAMPLES: &str = "\
+Examples:
+  rtc fmt *.rt                 lay out every scene of this folder
+  rtc fmt --check *.rt         name those that are not laid out so
+  cat balls.rt | rtc fmt -     standard input and output
+
+Exit codes:
+  0    done
+  1    a scene has errors: what they are in stays as it is; or, with --check, a scene would change
+  2    a file cannot be read or written";
+
+/// Flags of `rtc fmt`.
+#[derive(Args)]
+pub struct Fmt {
+    /// Scenes to lay out; `-` is standard input, which goes to standard output.
+    #[arg(value_name = "FILE", required = true)]
+    pub files: Vec<PathBuf>,
+
+    /// Writes nothing, names the scenes that would change, and fails if there is one.
+    #[arg(long)]
+    pub check: bool,
+
+    /// Writes nothing, and shows what would change as a unified diff.
+    #[arg(long)]
+    pub diff: bool,
+}
 
 /// Flags of `rtc build`.
 #[derive(Args)]

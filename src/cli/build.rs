@@ -170,7 +170,7 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
     let facts = facts(scene, &traced);
     context.threads.install(|| write(&traced.picture, &facts, arguments.look.bits, staged))?;
     let findings = findings(scene, &traced);
-    let warnings: Vec<Diagnostic> = findings.iter().map(|finding| compiled.judge(finding)).collect();
+    let warnings: Vec<Diagnostic> = findings.iter().filter_map(|finding| compiled.judge(finding)).collect();
     if !warnings.is_empty() {
         exit = exit.max(messenger.say(&warnings, &loaded.sources)?);
     }

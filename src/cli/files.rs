@@ -126,6 +126,10 @@ impl Files for Disk {
         asked.insert(path.clone(), answer.clone());
         answer
     }
+
+    fn name(&self, path: &FilePath) -> String {
+        self.named(path).display().to_string()
+    }
 }
 
 fn plain_file(metadata: &fs::Metadata) -> Result<(), FileError> {

@@ -7,7 +7,7 @@ use super::target::print;
 use super::terminal::Terminal;
 use super::{Exit, Problem};
 use rt_lang::files::FileError;
-use rt_lang::inventory::bounds;
+use rt_lang::inventory::{Param, bounds};
 use rt_lang::lower::Overrides;
 use rt_lang::math::DVec3;
 use rt_lang::render;
@@ -36,6 +36,7 @@ fn object(loaded: &Loaded, scene: &Scene) -> Value {
     json!({
         "schema": 1,
         "scene": loaded.sources.get(loaded.id).name,
+        "params": inventory.params.iter().map(param_object).collect::<Vec<Value>>(),
         "cameras": inventory.cameras,
         "things": inventory.kinds,
         "primitives": scene.primitives.len(),
@@ -48,6 +49,16 @@ fn object(loaded: &Loaded, scene: &Scene) -> Value {
         "bounces": scene.trace.bounces,
         "memory": render::memory(scene),
         "chosen": loaded.compiled.notes,
+    })
+}
+
+fn param_object(param: &Param) -> Value {
+    json!({
+        "name": param.name,
+        "type": param.ty,
+        "default": param.default,
+        "range": param.range,
+        "doc": param.doc,
     })
 }
 
@@ -75,6 +86,12 @@ fn words(loaded: &Loaded, scene: &Scene) -> String {
         let _ = writeln!(text, "{head:<11} {words}");
     };
     let inventory = &loaded.compiled.inventory;
+    for param in &inventory.params {
+        let Param { name, ty, default, .. } = param;
+        let range = param.range.as_ref().map_or(String::new(), |[low, high]| format!(" in {low} to {high}"));
+        let doc = param.doc.as_ref().map_or(String::new(), |doc| format!("  {}", doc.replace('\n', " ")));
+        row("param", &format!("{name}: {ty} = {default}{range}{doc}"));
+    }
     let counted: Vec<String> =
         inventory.kinds.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
     row("things", &counted.join(", "));

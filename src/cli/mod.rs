@@ -11,7 +11,7 @@
 //! | [`interrupt`] | Ctrl-C |
 //! | [`terminal`] | the one writer to standard error |
 //! | [`progress`] | how far a picture is |
-//! | [`build`], [`check`], [`develop`], [`explain`], [`info`], [`init`], [`manual`] | the commands |
+//! | [`build`], [`check`], [`develop`], [`explain`], [`fmt`], [`info`], [`init`], [`manual`] | the commands |
 
 mod args;
 mod build;
@@ -21,6 +21,7 @@ mod explain;
 mod files;
 mod info;
 mod init;
+mod fmt;
 mod input;
 mod interrupt;
 mod manual;
@@ -96,6 +97,7 @@ pub fn main() -> ExitCode {
         Command::Init(init) => init::run(&init),
         Command::Completions(completions) => manual::completions(&completions),
         Command::Man(man) => manual::man(&man),
+        Command::Fmt(fmt) => fmt::run(&fmt, terminal, &interrupt),
     };
     let exit = ended.unwrap_or_else(|problem| {
         terminal.problem(&problem);

@@ -4,6 +4,7 @@ use super::Problem;
 use super::args::Reading;
 use super::files::Disk;
 use super::input::{self, Input, is_standard};
+use rt_lang::files::FilePath;
 use rt_lang::lower::Overrides;
 use rt_lang::source::Sources;
 use rt_lang::span::SourceId;
@@ -30,21 +31,20 @@ pub fn load(path: &Path, reading: &Reading, overrides: &Overrides) -> Result<Loa
 
 /// Compiles a scene that was read.
 pub fn take(path: &Path, input: Input, reading: &Reading, overrides: &Overrides) -> Result<Loaded, Problem> {
-    let files = disk(path, reading)?;
-    let Input { sources, id, refused } = input;
+    let Input { mut sources, id, refused } = input;
+    let (files, place) = disk(path, reading)?;
+    sources.place(id, place);
     let compiled = match refused {
         Some(refused) => Compiled::refused(refused),
-        None => compile(&sources, id, overrides, &files),
+        None => compile(&files, &mut sources, id, &reading.options(overrides.clone())),
     };
     Ok(Loaded { sources, id, files, compiled })
 }
 
-/// What a scene may read.
-fn disk(path: &Path, reading: &Reading) -> Result<Disk, Problem> {
+/// What a scene may read, and its own place there.
+fn disk(path: &Path, reading: &Reading) -> Result<(Disk, FilePath), Problem> {
     let own = if is_standard(path) { Path::new("") } else { path.parent().unwrap_or(Path::new("")) };
     let disk = Disk::below(reading.root.as_deref().unwrap_or(own))?;
-    if !is_standard(path) {
-        disk.path_of(path)?;
-    }
-    Ok(disk)
+    let place = if is_standard(path) { FilePath::root("<stdin>") } else { disk.path_of(path)? };
+    Ok((disk, place))
 }

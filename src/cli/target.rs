@@ -130,6 +130,14 @@ fn cannot_write(name: &str, error: &io::Error) -> Problem {
     Problem::new(format!("cannot write {name}: {}", plain(error)))
 }
 
+/// Replaces a text that stands at this path, or leaves it as it is.
+pub fn replace(path: &Path, bytes: &[u8], interrupt: &Interrupt) -> Result<(), Problem> {
+    // A text has no format of pictures, and nothing here asks for it.
+    let mut staged = Target { path: path.into(), format: Format::Png }.stage(interrupt)?;
+    staged.write(bytes)?;
+    staged.finish()
+}
+
 /// The permissions of a file that is replaced, else those that the umask leaves.
 fn temporary(existing: Option<Permissions>) -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();

@@ -22,14 +22,20 @@ impl Defaults {
         let value = values.entry((kind, index)).or_insert_with(|| evaluate(kind.field(index)));
         T::read(value).expect("a sound thing has what is required, and a test evaluates every default")
     }
+
+    /// The same by index, as a value.
+    pub(super) fn value(&self, kind: KindId, index: usize) -> Value {
+        let mut values = self.values.borrow_mut();
+        values.entry((kind, index)).or_insert_with(|| evaluate(kind.field(index))).clone()
+    }
 }
 
 fn evaluate(field: &'static Field) -> Value {
     let Preset::Value(text) = field.default else { return Value::Invalid };
     // The place is never shown: a test holds that no default has an error.
     let (tree, _) = syntax::parse_expression(SourceId(u32::MAX), text);
-    let (expr, _) = check::check_value(field, &tree, text);
-    Evaluator::new().expr(&expr)
+    let (expr, _) = check::check_value(field, &tree);
+    Evaluator::alone(&expr)
 }
 
 #[cfg(test)]
@@ -53,7 +59,7 @@ mod tests {
             assert_ne!(value, Value::Invalid, "{kind}.{}: {text}", field.name);
             let (tree, slips) = syntax::parse_expression(SourceId(0), text);
             assert_eq!(slips, [], "{kind}.{}: {text}", field.name);
-            assert_eq!(check::check_value(field, &tree, text).1, [], "{kind}.{}: {text}", field.name);
+            assert_eq!(check::check_value(field, &tree).1, [], "{kind}.{}: {text}", field.name);
             let kind = crate::schema::kind(kind).unwrap();
             assert_eq!(errors::out_of_range(kind, field, &value, tree.span), None);
         }

@@ -1,12 +1,13 @@
 //! One function for each thing that can be wrong with a value.
 
-use super::{MAX_LEVELS, MAX_TEXTURE_LEVELS, MAX_THINGS, Value};
-use crate::check::Function;
+use super::{MAX_TEXTURE_LEVELS, Value};
+use crate::check::{Declared, Function, Param};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::schema::{Field, FieldType, KindId, Range};
 use crate::span::Span;
 use crate::syntax::ast::BinaryOp;
 use crate::units::{self, Dim};
+use smallvec::{SmallVec, smallvec};
 
 /// A number as a person would write it.
 fn show(x: f64) -> String {
@@ -40,12 +41,15 @@ pub(super) fn out_of_range(kind: KindId, field: &Field, value: &Value, span: Spa
         let parts = texture.parts.iter().flatten();
         return parts.into_iter().find_map(|part| out_of_range(kind, field, &part.value, part.span));
     }
-    let parts = match value {
-        Value::Number(x) => vec![*x],
-        Value::Color(c) => c.to_array().to_vec(),
-        Value::Tuple(v) if matches!(field.ty, FieldType::IntTuple(2)) => vec![v.x, v.y],
+    if field.range.is_any() {
+        return None;
+    }
+    let parts: SmallVec<[f64; 3]> = match value {
+        Value::Number(x) => smallvec![*x],
+        Value::Color(c) => SmallVec::from(c.to_array()),
+        Value::Tuple(v) if matches!(field.ty, FieldType::IntTuple(2)) => smallvec![v.x, v.y],
         // A point as the target of a field that also takes a distance is not bound by the distance's range.
-        Value::Tuple(v) if matches!(field.ty, FieldType::Tuple(..)) => v.to_array().to_vec(),
+        Value::Tuple(v) if matches!(field.ty, FieldType::Tuple(..)) => SmallVec::from(v.to_array()),
         _ => return None,
     };
     let bad = parts.into_iter().find(|part| !field.range.contains(*part))?;
@@ -166,14 +170,84 @@ pub(super) fn outside_domain(function: Function, what: &str, arguments: &[Value]
     Diagnostic::new(Code::E0407, message, span).at(what.to_string())
 }
 
-pub(super) fn too_many_levels(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0406, format!("more than {MAX_LEVELS} levels of groups"), span)
+pub(super) fn too_many_levels(most: usize, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0406, format!("more than {most} levels of groups, parts and calls"), span)
         .at("one level too many")
-        .help("put the things of some levels into one group")
+        .help("put the things of some levels into one")
 }
 
-pub(super) fn too_many_things(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0406, format!("more than {MAX_THINGS} things"), span)
+pub(super) fn too_many_things(most: usize, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0406, format!("more than {most} things"), span)
         .at("too many in all")
-        .help("groups within groups multiply: this many no picture can show")
+        .help("what is used within what is used multiplies; those that prototypes hold count as well")
+}
+
+pub(super) fn too_many_steps(most: u64, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0406, format!("more than {most} steps to evaluate this file"), span)
+        .at("given up here")
+        .help("loops within loops, and functions that call functions, multiply")
+}
+
+pub(super) fn too_deep(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0406, "too many expressions within each other", span).at("given up here")
+}
+
+pub(super) fn long_list(most: usize, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0406, format!("a list of more than {most} items"), span)
+        .at("too long")
+        .help("go through two lists, one inside the other")
+}
+
+pub(super) fn many_items(most: usize, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0406, format!("more than {most} items in all lists together"), span).at("too many")
+}
+
+pub(super) fn few_steps(count: f64, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::E0401,
+        format!("`linspace` wants two values or more, this is {}", show(count)),
+        span,
+    )
+    .at("out of range")
+    .help("the first is `a`, the last is `b`")
+}
+
+pub(super) fn index_out_of_range(index: f64, len: usize, span: Span) -> Diagnostic {
+    let message = match len {
+        0 => "an empty list has no items".to_string(),
+        1 => format!("the one item of this list is `[0]`, this is `[{}]`", show(index)),
+        len => format!("the items of this list are `[0]` to `[{}]`, this is `[{}]`", len - 1, show(index)),
+    };
+    Diagnostic::new(Code::E0401, message, span).at("out of range")
+}
+
+pub(super) fn param_out_of_range(param: &Param, [low, high]: [f64; 2], value: f64, span: Span) -> Diagnostic {
+    let dim = match &param.declared {
+        Declared::Field(ty) => dimension(*ty),
+        _ => units::NONE,
+    };
+    let [low, high, value] = [low, high, value].map(|x| show_quantity(x, dim));
+    let message = format!("`{}` must be from {low} to {high}, this is {value}", param.name);
+    let diagnostic = Diagnostic::new(Code::E0401, message, span).at("out of range");
+    let diagnostic = diagnostic.label(param.span, "declared here");
+    match &param.doc {
+        Some(doc) => diagnostic.help(doc.to_string()),
+        None => diagnostic,
+    }
+}
+
+/// What must hold does not.
+pub(super) fn assertion(message: Option<&str>, condition: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0405, message.unwrap_or("this does not hold"), condition).at("does not hold")
+}
+
+pub(super) fn endless_bounds(span: Span, thing: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0305, "this has no bounds, since a part of it has no end", span)
+        .at("endless")
+        .label(thing, "has no end")
+        .help("ask something with an end; a `height` gives one to a hyperboloid")
+}
+
+pub(super) fn no_bounds(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0305, "there is nothing here that has bounds", span).at("empty, or in no place")
 }

@@ -12,16 +12,13 @@ use std::rc::Rc;
 pub(super) fn call(
     function: Function,
     arguments: &[Value],
-    spans: &[Span],
+    span: impl Fn(usize) -> Span,
 ) -> Result<Value, Box<Diagnostic>> {
     use Function::*;
     use Value::{Color, Number, Tuple};
     let number = |x: f64| Ok(Number(x));
     let transform = |transform: DAffine3| Ok(Value::Transform(Rc::new(transform)));
-    let wrong = |what: &str| {
-        let span = spans.first().copied().unwrap_or(Span::new(crate::span::SourceId(0), 0, 0));
-        Err(Box::new(errors::outside_domain(function, what, arguments, span)))
-    };
+    let wrong = |what: &str| Err(Box::new(errors::outside_domain(function, what, arguments, span(0))));
     match (function, arguments) {
         (Sin, [Number(x)]) => number(math::sin(*x)),
         (Cos, [Number(x)]) => number(math::cos(*x)),
@@ -57,6 +54,8 @@ pub(super) fn call(
         (Log, [Number(x)]) if *x > 0.0 => number(math::ln(*x)),
         (Log, _) => wrong("only numbers above 0 have a logarithm"),
         (Length, [Tuple(v)]) => number(length(*v)),
+        (Length, [Value::List(list)]) => number(list.len() as f64),
+        (Rand, numbers) => number(rand(numbers.iter().filter_map(as_number))),
         (Normalize, [Tuple(v)]) if *v != DVec3::ZERO => {
             // Scaled first, so that neither huge nor tiny components leave the numbers on the way.
             let scaled = *v / v.abs().max_element();
@@ -79,7 +78,9 @@ pub(super) fn call(
             Ok(Color(color::blackbody(*kelvin)))
         }
         (Blackbody, _) => wrong("a glowing body is between 100K and 1 000 000 000K hot"),
-        (Checker | Stripes | Noise | Image, _) => super::texture::make(function, arguments, spans),
+        (Checker | Stripes | Noise | Image, _) => {
+            super::texture::make(function, arguments, &(0..arguments.len()).map(span).collect::<Vec<_>>())
+        }
         (Scale, [Number(k)]) => transform(DAffine3::from_scale(DVec3::splat(*k))),
         (Scale, [Number(x), Number(y), Number(z)]) => transform(DAffine3::from_scale(DVec3::new(*x, *y, *z))),
         (Turn, [Number(axis), Number(angle)]) => {
@@ -99,6 +100,24 @@ fn as_number(value: &Value) -> Option<f64> {
         Value::Number(x) => Some(*x),
         _ => None,
     }
+}
+
+/// A number in [0, 1) that depends on the bits of these: each is mixed in by the finaliser of SplitMix64 (Steele,
+/// Lea, Flood, 2014).
+fn rand(numbers: impl Iterator<Item = f64>) -> f64 {
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    for number in numbers {
+        // 0 and −0 are one number.
+        state = mix_bits(state.wrapping_add((number + 0.0).to_bits()).wrapping_mul(0xd134_2543_de82_ef95));
+    }
+    (mix_bits(state) >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+fn mix_bits(mut z: u64) -> u64 {
+    z = z.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
 }
 
 /// Length of a vector, also where its square would overflow.
@@ -150,9 +169,20 @@ mod tests {
     }
 
     #[test]
+    fn random_numbers_are_even_and_differ() {
+        let numbers: Vec<f64> = (0..10_000).map(|i| rand([f64::from(i)].into_iter())).collect();
+        assert!(numbers.iter().all(|x| (0.0..1.0).contains(x)));
+        let mean = numbers.iter().sum::<f64>() / 1e4;
+        assert!((mean - 0.5).abs() < 0.01, "{mean}");
+        assert_ne!(rand([1.0, 2.0].into_iter()), rand([2.0, 1.0].into_iter()));
+        assert_eq!(rand([0.0].into_iter()), rand([-0.0].into_iter()));
+    }
+
+    #[test]
     fn the_remainder_has_the_sign_of_the_divisor() {
         for (a, b, wanted) in [(7.0, 3.0, 1.0), (-7.0, 3.0, 2.0), (7.0, -3.0, -2.0), (6.0, 3.0, 0.0)] {
-            let found = call(Function::Mod, &[Value::Number(a), Value::Number(b)], &[]).unwrap();
+            let found =
+                call(Function::Mod, &[Value::Number(a), Value::Number(b)], |_| unreachable!()).unwrap();
             assert_eq!(found, Value::Number(wanted));
         }
     }

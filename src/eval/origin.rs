@@ -1,26 +1,26 @@
 //! Where the things of a picture came from.
 
+use super::built::NONE;
 use crate::scene::OriginId;
 use crate::span::Span;
 
-/// Chains of uses, each a place and the use around it.
+/// Chains of uses, each a place and the use around it. All turns of a loop share one.
 #[derive(Clone, Debug, Default)]
 pub struct Origins {
-    links: Vec<(Span, Option<OriginId>)>,
+    links: Vec<(Span, u32)>,
 }
 
 impl Origins {
-    /// Adds a place that was reached by way of `outer`.
-    pub(super) fn add(&mut self, span: Span, outer: Option<OriginId>) -> OriginId {
-        self.links.push((span, outer));
-        OriginId(self.links.len() as u32 - 1)
+    /// Takes links in, each with the index of the one around it.
+    pub(super) fn new(links: Vec<(Span, u32)>) -> Origins {
+        Origins { links }
     }
 
     /// The chain of places, outermost use first.
     pub fn chain(&self, id: OriginId) -> Vec<Span> {
         let mut chain = vec![];
-        let mut next = Some(id);
-        while let Some((span, outer)) = next.and_then(|id| self.links.get(id.0 as usize)) {
+        let mut next = id.0;
+        while let Some((span, outer)) = self.links.get(next as usize).filter(|_| next != NONE) {
             chain.push(*span);
             next = *outer;
         }

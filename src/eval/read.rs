@@ -59,7 +59,7 @@ reads! {
     Transform as DAffine3: Value::Transform(transform) => Some(**transform);
     Made as Rc<Made>: Value::Made(made) => Some(made.clone());
     LensPart as Rc<Made>: Value::Made(made) => Some(made.clone());
-    CameraName as ThingId: Value::Thing(id) => Some(*id);
+    CameraName as ThingId: Value::Thing(thing) => Some(thing.id);
     FilterWord as Filter: Value::Word(word) => Filter::from_word(word);
     BackgroundWord as Background: Value::Word(word) => Background::from_word(word);
     TonemapWord as Tonemap: Value::Word(word) => Tonemap::from_word(word);
@@ -110,7 +110,7 @@ fn paint(value: &Value) -> Option<Paint> {
 
 fn aim(value: &Value) -> Option<Aim> {
     match value {
-        Value::Thing(id) => Some(Aim::Thing(*id)),
+        Value::Thing(thing) => Some(Aim::Thing(thing.id)),
         value => triple(value).map(Aim::Point),
     }
 }

@@ -1,13 +1,20 @@
 //! Values.
 
+use super::built::{Built, Shift};
+use super::frame::Frame;
+use super::list::List;
 use super::read::Read;
 use super::texture::Texture;
+use crate::check::{PartId, TableId, Written};
 use crate::color::Rgb;
 use crate::math::{DAffine3, DVec3};
-use crate::schema::{Key, KindId, Preset};
+use crate::scene::shape::Bounds;
+use crate::schema::{Key, KindId, PLACED, Preset};
 use crate::span::Span;
+use smallvec::SmallVec;
 use smol_str::SmolStr;
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// The value of an expression, in base units. Its type was checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,31 +39,93 @@ pub enum Value {
     Transform(Rc<DAffine3>),
     /// A prototype, or a value written in place.
     Made(Rc<Made>),
+    /// A part that is not drawn.
+    Part(Rc<PartValue>),
     /// A thing that stands in the scene.
-    Thing(ThingId),
+    Thing(Rc<Placed>),
+    /// A list.
+    List(Rc<List>),
+    /// A box in space.
+    Bounds(Rc<Bounds>),
+    /// A row of a table.
+    Row(TableId, u32),
 }
 
-/// Names one thing among those made in a run.
+/// Names one thing of the picture: an index among the places of [`super::Things`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ThingId(pub u32);
 
-/// A thing with its fields, in the scene or not.
+/// A thing with its fields, in the scene or not. What is the same for all that are made at one place is shared, and
+/// so is the prototype.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Made {
     /// Its kind.
     pub kind: KindId,
-    /// What was given, by index in [`KindId::fields`].
-    pub fields: Box<[Option<Given>]>,
-    /// What a group holds.
-    pub(super) members: Rc<[Member]>,
-    /// Where the prototype it was made from was written.
-    pub(super) proto: Option<Span>,
     /// Where it was written.
     pub span: Span,
-    /// How many levels of groups it holds.
-    pub(super) levels: usize,
-    /// How many things and groups it holds, those that are held by others included.
-    pub(super) inside: usize,
+    /// Which fields were given here, a bit each by index in [`KindId::fields`].
+    pub(super) mask: u64,
+    /// Their values, in that order.
+    pub(super) values: SmallVec<[Value; 2]>,
+    /// What is the same for all that is made here.
+    pub(super) written: Arc<Written>,
+    /// What it was made from.
+    pub(super) base: Option<Rc<Made>>,
+    /// What a group holds.
+    pub(super) group: Option<Rc<Group>>,
+}
+
+/// The members of a group that is not drawn.
+#[derive(Debug, PartialEq)]
+pub(super) struct Group {
+    /// What is drawn where the group is.
+    pub(super) built: Built,
+    /// Which of the buffers that were being filled it was.
+    pub(super) level: usize,
+    /// The names inside, by slot.
+    pub(super) inside: Inside,
+}
+
+/// The values of the names inside a thing, by slot.
+pub(super) type Inside = Rc<[(u32, Value)]>;
+
+/// A part that is not drawn, with what it is given.
+#[derive(Debug)]
+pub struct PartValue {
+    pub(super) part: PartId,
+    /// Where the names around the part are.
+    pub(super) around: Option<Rc<Frame>>,
+    /// By param.
+    pub(super) params: Vec<Option<Given>>,
+    /// By index in [`PLACED`].
+    pub(super) placed: [Option<Given>; PLACED.len()],
+    /// Where it was written.
+    pub(super) span: Span,
+}
+
+impl PartialEq for PartValue {
+    fn eq(&self, other: &PartValue) -> bool {
+        std::ptr::eq(self, other)
+    }
+}
+
+/// A thing that stands in the scene, as its name knows it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placed {
+    /// Its place.
+    pub(super) id: ThingId,
+    /// In which of the buffers that are being filled.
+    pub(super) level: usize,
+    /// The group it stands in.
+    pub(super) stands: u32,
+    /// The group from which it is seen: where the path to it begins.
+    pub(super) from: u32,
+    /// Its fields.
+    pub(super) made: Rc<Made>,
+    /// The names inside it.
+    pub(super) inside: Inside,
+    /// How these have been moved since they were made.
+    pub(super) shift: Shift,
 }
 
 /// The value of a field, and where it was written.
@@ -68,28 +137,56 @@ pub struct Given {
     pub span: Span,
 }
 
-/// A thing that a group holds.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Member {
-    pub(super) id: ThingId,
-    pub(super) name: Option<SmolStr>,
-    pub(super) made: Rc<Made>,
-    pub(super) span: Span,
-}
-
 impl Made {
+    /// A thing of a kind with nothing given.
+    pub fn new(kind: KindId, span: Span) -> Made {
+        let written = Arc::new(Written { name: None, span, fields: [].into() });
+        Made { kind, span, mask: 0, values: SmallVec::new(), written, base: None, group: None }
+    }
+
+    /// The field at an index of [`KindId::fields`] as given here or by the prototype.
+    pub(super) fn find(&self, index: usize) -> Option<(&Value, Span)> {
+        let mut made = self;
+        loop {
+            if made.mask >> index & 1 == 1 {
+                let rank = (made.mask & ((1 << index) - 1)).count_ones() as usize;
+                return Some((&made.values[rank], made.written.fields[rank]));
+            }
+            made = made.base.as_deref()?;
+        }
+    }
+
     /// A field as given, with its place; none where it is not given, or has an error.
     pub fn given<T: Read>(&self, key: Key<T>) -> Option<(T::Out, Span)> {
-        let given = self.fields[key.index(self.kind)].as_ref()?;
-        Some((T::read(&given.value)?, given.span))
+        let (value, span) = self.find(key.index(self.kind))?;
+        Some((T::read(value)?, span))
+    }
+
+    /// The name it was given where it stands.
+    pub fn name(&self) -> Option<&SmolStr> {
+        self.written.name.as_ref()
     }
 
     /// Whether no field has an error, and none that must be given is missing.
     pub fn is_sound(&self) -> bool {
-        self.kind.fields().zip(&self.fields).all(|(field, given)| match given {
-            Some(given) => given.value.is_sound(),
-            None => field.default != Preset::Required,
-        })
+        let mut given = 0;
+        let mut made = Some(self);
+        while let Some(here) = made {
+            let mut index_bits = here.mask;
+            for value in &here.values {
+                let bit = index_bits & index_bits.wrapping_neg();
+                index_bits ^= bit;
+                if given & bit == 0 && !value.is_sound() {
+                    return false;
+                }
+            }
+            given |= here.mask;
+            made = here.base.as_deref();
+        }
+        let missing = |(index, field): (usize, &crate::schema::Field)| {
+            field.default == Preset::Required && given >> index & 1 == 0
+        };
+        !self.kind.fields().enumerate().any(missing)
     }
 }
 

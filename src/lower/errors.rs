@@ -11,8 +11,8 @@ fn start() -> Span {
     Span::new(SourceId(0), 0, 0)
 }
 
-pub(super) fn nothing_stands() -> Diagnostic {
-    Diagnostic::new(Code::E0302, "nothing stands in this scene", start())
+pub(super) fn nothing_stands(main: SourceId) -> Diagnostic {
+    Diagnostic::new(Code::E0302, "nothing stands in this scene", Span::new(main, 0, 0))
         .at("no shape and no light")
         .help("a thing in the picture is a statement of its own: `sphere { radius: 1m }`")
 }

@@ -11,28 +11,37 @@ use crate::math::{DAffine3, DVec3};
 use crate::scene::Shape;
 use crate::scene::shape::Instance;
 use crate::schema::mesh;
+use crate::source::Sources;
 use crate::span::Span;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The most bytes a mesh's file may have.
 const MAX_FILE: usize = 1 << 28;
 
-/// The meshes of a scene.
-pub(super) struct Meshes<'f> {
+/// The meshes of a scene, read when they are first asked for.
+pub struct Meshes<'f> {
     files: &'f dyn Files,
+    sources: &'f Sources,
+    read: RefCell<Read>,
+}
+
+#[derive(Default)]
+struct Read {
     /// What became of each file that was asked for; else why it is no mesh.
-    read: BTreeMap<FilePath, Result<Arc<Mesh>, String>>,
+    files: BTreeMap<FilePath, Result<Arc<Mesh>, String>>,
     triangles: usize,
 }
 
 impl<'f> Meshes<'f> {
-    pub(super) fn new(files: &'f dyn Files) -> Meshes<'f> {
-        Meshes { files, read: BTreeMap::new(), triangles: 0 }
+    /// None yet. The paths in `sources` are relative to each source's own.
+    pub fn new(files: &'f dyn Files, sources: &'f Sources) -> Meshes<'f> {
+        Meshes { files, sources, read: RefCell::default() }
     }
 
     /// Lowers a mesh.
-    pub(super) fn lower(&mut self, things: &Things, thing: &Thing) -> Result<Shape, Box<Diagnostic>> {
+    pub(super) fn lower(&self, things: &Things, thing: &Thing) -> Result<Shape, Box<Diagnostic>> {
         let made = &thing.made;
         let file = things.read(made, mesh::FILE);
         let span = made.given(mesh::FILE).map_or(made.span, |(_, span)| span);
@@ -40,28 +49,28 @@ impl<'f> Meshes<'f> {
         let unit = DVec3::splat(things.read(made, mesh::UNIT));
         let placed = placed(thing.world_from_object * DAffine3::from_scale(unit), made.span)?;
         let smooth = things.read(made, mesh::SMOOTH);
-        let shape = Shape::Mesh(Box::new(Instance { mesh: triangles, placed, smooth }));
-        // Triangles have areas in the file; in the world they may be too small or too large for numbers.
-        match (shape.area().is_normal(), shape.bounds()) {
-            (true, Some(bounds)) if bounds.size().is_finite() => Ok(shape),
-            _ => Err(Box::new(errors::flattened(made.span))),
+        let shape = Shape::Mesh(Box::new(Instance::new(triangles, placed, smooth)));
+        match shape.bounds().is_some_and(|bounds| bounds.size().is_finite()) {
+            true => Ok(shape),
+            false => Err(Box::new(errors::too_large(made.span))),
         }
     }
 
-    fn file(&mut self, file: &str, span: Span) -> Result<Arc<Mesh>, Box<Diagnostic>> {
+    fn file(&self, file: &str, span: Span) -> Result<Arc<Mesh>, Box<Diagnostic>> {
         let refuse = |error| Box::new(errors::file(file, error, span));
-        let path = FilePath::root("scene.rt").join(file).map_err(refuse)?;
-        let found = match self.read.get(&path) {
+        let path = self.sources.get(span.source).path.join(file).map_err(refuse)?;
+        let mut read = self.read.borrow_mut();
+        let found = match read.files.get(&path) {
             Some(found) => found.clone(),
             None => {
                 let bytes = self.files.read(&path, MAX_FILE).map_err(refuse)?;
                 let found = Mesh::decode(&bytes).map(Arc::new);
-                self.triangles += found.as_ref().map_or(0, |mesh| mesh.len());
-                self.read.insert(path, found.clone());
+                read.triangles += found.as_ref().map_or(0, |mesh| mesh.len());
+                read.files.insert(path, found.clone());
                 found
             }
         };
-        if self.triangles > MOST_TRIANGLES {
+        if read.triangles > MOST_TRIANGLES {
             return Err(Box::new(errors::too_many_triangles(MOST_TRIANGLES, span)));
         }
         found.map_err(|why| Box::new(errors::no_mesh(file, &why, span)))

@@ -11,17 +11,18 @@ mod texture;
 
 use crate::color::Rgb;
 use crate::diagnostic::Diagnostic;
-use crate::eval::{Aim, Thing, ThingId, Things};
+use crate::eval::{Aim, Reach, Thing, ThingId, Things};
 use crate::files::Files;
 use crate::math::{DAffine3, DVec3, PI, sin};
 use crate::scene::shape::Bounds;
 use crate::scene::{
     Develop, FrameId, Light, Material, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace,
 };
-use crate::schema::{self, Category, DEFAULT_SAMPLES, light, render, sun};
-use crate::span::Span;
+use crate::schema::{self, Category, DEFAULT_SAMPLES, KindId, light, render, sun};
+use crate::source::Sources;
+use crate::span::{SourceId, Span};
 use material::Materials;
-use mesh::Meshes;
+pub use mesh::Meshes;
 use texture::Textures;
 
 /// The most pixels a picture may have.
@@ -69,17 +70,25 @@ pub struct Places {
 }
 
 /// Lowers the things of a picture. Things with errors, which were reported, are left out.
-pub fn lower(things: &Things, overrides: &Overrides, files: &dyn Files) -> Lowered {
+pub fn lower(
+    things: &Things,
+    overrides: &Overrides,
+    files: &dyn Files,
+    sources: &Sources,
+    meshes: &Meshes,
+) -> Lowered {
+    let written = written_blocks(things);
     let mut lowering = Lowering {
         things,
         overrides,
+        written: &written,
         primitives: vec![],
         materials: Materials::default(),
-        textures: Textures::new(files),
-        meshes: Meshes::new(files),
+        textures: Textures::new(files, sources),
+        meshes,
         frames: vec![],
         lights: vec![],
-        extents: vec![Extent::Nowhere; things.things.len()],
+        extents: vec![Extent::Nowhere; things.len()],
         bare: 0,
         out: Lowered::default(),
     };
@@ -108,18 +117,47 @@ pub fn lower(things: &Things, overrides: &Overrides, files: &dyn Files) -> Lower
 }
 
 /// What is wrong with things among which there is nothing to see: asked only where nothing else is wrong.
-pub fn nothing_to_see(things: &Things) -> Option<Diagnostic> {
-    let seen = |thing: &Thing| matches!(thing.made.kind.get().category, Category::Shape | Category::Light);
-    (!things.things.iter().any(seen)).then(errors::nothing_stands)
+pub fn nothing_to_see(things: &Things, main: SourceId) -> Option<Diagnostic> {
+    let seen = |kind: KindId| matches!(kind.get().category, Category::Shape | Category::Light);
+    (!things.kinds().any(seen)).then(|| errors::nothing_stands(main))
+}
+
+/// Where a thing is, for what asks before there is a scene.
+pub fn measure(things: &Things, thing: &Thing, meshes: &Meshes) -> Result<Reach, Box<Diagnostic>> {
+    let (made, kind) = (&thing.made, thing.made.kind);
+    let shape = if kind == schema::mesh::KIND {
+        meshes.lower(things, thing)?
+    } else if kind.get().category == Category::Shape {
+        shape::lower(things, thing)?
+    } else if kind == light::KIND {
+        let at = things.read(made, light::AT);
+        let radius = things.read(made, light::RADIUS);
+        if radius == 0.0 {
+            let position = thing.world_from_object.transform_point3(at);
+            return Ok(Reach::Box(Bounds { min: position, max: position }));
+        }
+        shape::ball(thing.world_from_object * DAffine3::from_translation(at), radius, made.span)?
+    } else {
+        return Ok(Reach::Nowhere);
+    };
+    Ok(shape.bounds().map_or(Reach::Endless, Reach::Box))
+}
+
+/// The blocks that are not left out, each with its index among the things.
+fn written_blocks(things: &Things) -> Vec<(usize, Thing)> {
+    let block = |thing: &Thing| thing.made.kind.get().category == Category::Block && !thing.hidden;
+    things.iter().enumerate().filter(|(_, thing)| block(thing)).collect()
 }
 
 struct Lowering<'a> {
     things: &'a Things,
     overrides: &'a Overrides,
+    /// The blocks, each with its index among the things.
+    written: &'a [(usize, Thing)],
     primitives: Vec<Primitive>,
     materials: Materials,
     textures: Textures<'a>,
-    meshes: Meshes<'a>,
+    meshes: &'a Meshes<'a>,
     frames: Vec<DAffine3>,
     lights: Vec<Light>,
     /// By thing.
@@ -158,7 +196,11 @@ impl<'a> Lowering<'a> {
     fn surfaces_and_lights(&mut self) {
         let mut sky_place = None;
         let mut spots = vec![];
-        for (index, thing) in self.things.things.iter().enumerate() {
+        for (index, thing) in self.things.iter().enumerate() {
+            if thing.hidden {
+                self.hidden(index, &thing);
+                continue;
+            }
             let sound =
                 thing.made.is_sound() && thing.material.as_ref().is_none_or(|given| given.value.is_sound());
             let kind = thing.made.kind;
@@ -173,18 +215,20 @@ impl<'a> Lowering<'a> {
                 continue;
             }
             if kind.get().category == Category::Shape {
-                self.surface(index, thing);
+                self.surface(index, &thing);
             } else if kind == light::KIND {
-                self.lamp(index, thing);
-                spots.extend(thing.made.given(light::AIM).map(|(aim, span)| (index, thing, aim, span)));
+                self.lamp(index, &thing);
+                if let Some((aim, span)) = thing.made.given(light::AIM) {
+                    spots.push((index, thing, aim, span));
+                }
             } else if kind == sun::KIND {
-                self.sun(thing);
+                self.sun(&thing);
             } else if kind == schema::sky::KIND {
-                self.sky(thing);
+                self.sky(&thing);
             }
         }
         for (index, thing, aim, span) in spots {
-            self.spot(index, thing, aim, span);
+            self.spot(index, &thing, aim, span);
         }
     }
 
@@ -212,6 +256,15 @@ impl<'a> Lowering<'a> {
         };
         let intensity = power / (PI * (height(inner) + height(outer)));
         self.add_light(thing, Light::Spot { position, direction, intensity, inner, outer });
+    }
+
+    /// What is left out is not drawn, and still has its place for those that aim at it.
+    fn hidden(&mut self, index: usize, thing: &Thing) {
+        if thing.made.is_sound()
+            && let Ok(Reach::Box(bounds)) = measure(self.things, thing, self.meshes)
+        {
+            self.extents[index] = Extent::Lamp(bounds);
+        }
     }
 
     fn surface(&mut self, index: usize, thing: &Thing) {
@@ -308,8 +361,8 @@ impl<'a> Lowering<'a> {
 
     /// Finds the one camera, lens and render block.
     fn blocks(&mut self) -> Blocks<'a> {
-        let all: &'a [Thing] = &self.things.things;
-        let of = |kind| all.iter().filter(move |thing| thing.made.kind == kind);
+        let all = self.written;
+        let of = |kind| all.iter().map(|(_, thing)| thing).filter(move |thing| thing.made.kind == kind);
         let mut blocks = Blocks::default();
         for (kind, place) in
             [(render::KIND, &mut blocks.render), (crate::schema::lens::KIND, &mut blocks.lens)]
@@ -326,8 +379,8 @@ impl<'a> Lowering<'a> {
         }
         let cameras: Vec<(usize, &Thing)> = all
             .iter()
-            .enumerate()
             .filter(|(_, thing)| thing.made.kind == crate::schema::camera::KIND)
+            .map(|(index, thing)| (*index, thing))
             .collect();
         blocks.camera = self.choose_camera(&cameras, blocks.render);
         if let (Some(lens), [first, _, ..]) = (blocks.lens, &cameras[..]) {
@@ -337,9 +390,10 @@ impl<'a> Lowering<'a> {
     }
 
     fn choose_camera(&mut self, cameras: &[(usize, &'a Thing)], render: Option<&Thing>) -> Option<&'a Thing> {
-        let names: Vec<&str> = cameras.iter().filter_map(|(_, camera)| camera.name.as_deref()).collect();
+        let names: Vec<&str> =
+            cameras.iter().filter_map(|(_, camera)| camera.name()).map(|name| name.as_str()).collect();
         if let Some(wanted) = &self.overrides.camera {
-            let found = cameras.iter().find(|(_, camera)| camera.name.as_deref() == Some(wanted));
+            let found = cameras.iter().find(|(_, camera)| camera.name().is_some_and(|name| name == wanted));
             if found.is_none() && !self.things.incomplete {
                 let place = cameras.first().map(|(_, camera)| camera.made.span);
                 self.report(errors::no_such_camera(wanted, &names, place));
@@ -361,7 +415,7 @@ impl<'a> Lowering<'a> {
     }
 
     fn places(&self, id: ThingId) -> Option<std::ops::Range<usize>> {
-        self.things.places.get(&id).cloned()
+        self.things.place(id)
     }
 
     /// Width and height in pixels; none where there are too many.
@@ -422,8 +476,8 @@ impl<'a> Lowering<'a> {
         if self.lights.is_empty() && !glows {
             let lights = self
                 .things
-                .things
                 .iter()
+                .filter(|thing| !thing.hidden)
                 .any(|thing| thing.made.kind.get().category == Category::Light || !thing.made.is_sound());
             if !lights {
                 self.lights.push(Light::Sky { radiance: Rgb::ONE, panorama: None });

@@ -8,6 +8,7 @@ use crate::files::{FilePath, Files};
 use crate::math::DVec2;
 use crate::scene::{ImageId, Paint, Texture, TextureId};
 use crate::schema;
+use crate::source::Sources;
 use crate::span::Span;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -21,6 +22,7 @@ const MAX_PIXELS: u64 = 1 << 27;
 /// The textures and pictures of a scene, each once.
 pub(super) struct Textures<'f> {
     files: &'f dyn Files,
+    sources: &'f Sources,
     textures: Vec<Texture>,
     /// By canonical bytes.
     known: BTreeMap<Vec<u8>, TextureId>,
@@ -30,8 +32,15 @@ pub(super) struct Textures<'f> {
 }
 
 impl<'f> Textures<'f> {
-    pub(super) fn new(files: &'f dyn Files) -> Textures<'f> {
-        Textures { files, textures: vec![], known: BTreeMap::new(), images: vec![], read: BTreeMap::new() }
+    pub(super) fn new(files: &'f dyn Files, sources: &'f Sources) -> Textures<'f> {
+        Textures {
+            files,
+            sources,
+            textures: vec![],
+            known: BTreeMap::new(),
+            images: vec![],
+            read: BTreeMap::new(),
+        }
     }
 
     pub(super) fn finish(self) -> (Vec<Texture>, Vec<Arc<Image>>) {
@@ -86,7 +95,7 @@ impl<'f> Textures<'f> {
     /// The picture of a file, named as the scene names it.
     pub(super) fn image(&mut self, file: &str, span: Span) -> Result<ImageId, Box<Diagnostic>> {
         let refuse = |error| Box::new(errors::file(file, error, span));
-        let path = FilePath::root("scene.rt").join(file).map_err(refuse)?;
+        let path = self.sources.get(span.source).path.join(file).map_err(refuse)?;
         let found = match self.read.get(&path) {
             Some(found) => found.clone(),
             None => {

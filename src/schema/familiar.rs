@@ -1,6 +1,6 @@
 //! What other tools call the fields and kinds that have another name here: for hints beyond spelling.
 
-use super::{Category, KindId};
+use super::Category;
 
 /// What a name from elsewhere means here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,13 +26,12 @@ const fn elsewhere(hint: &'static str) -> Familiar {
 }
 
 /// What a field that a kind does not have is called here.
-pub fn field(kind: KindId, name: &str) -> Option<Familiar> {
-    let kind = kind.get();
-    match kind.category {
-        Category::Shape | Category::Group => placed(name).or_else(|| shape(kind.name, name)),
-        Category::Material => material(kind.name, name),
-        Category::Light => light(kind.name, name),
-        Category::Block => block(kind.name, name),
+pub fn field(kind: &str, category: Category, name: &str) -> Option<Familiar> {
+    match category {
+        Category::Shape | Category::Group => placed(name).or_else(|| shape(kind, name)),
+        Category::Material => material(kind, name),
+        Category::Light => light(kind, name),
+        Category::Block => block(kind, name),
     }
 }
 
@@ -222,7 +221,7 @@ pub fn kind(name: &str) -> Option<Familiar> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::schema;
+    use crate::schema::{self, KindId};
 
     /// Every name that a hint leads to exists, and no hint hides a field that there is.
     #[test]
@@ -232,7 +231,7 @@ mod tests {
         for index in 0..schema::KINDS.len() {
             let id = KindId(index as u8);
             for word in &words {
-                let Some(found) = field(id, word) else { continue };
+                let Some(found) = field(id.get().name, id.get().category, word) else { continue };
                 if id.field_index(word).is_none()
                     && let Some(name) = found.name
                 {

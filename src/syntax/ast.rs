@@ -274,8 +274,8 @@ pub enum ExprKind {
     Paren(Box<Expr>),
     /// `f(a, b: c)`
     Call {
-        /// The function's name.
-        function: Name,
+        /// The function's name, or the path to it in an imported file.
+        function: Path,
         /// Its arguments in order.
         arguments: Vec<Argument>,
     },

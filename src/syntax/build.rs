@@ -6,11 +6,13 @@ use super::ast::{
 };
 use super::cut::Item;
 use super::errors::{self, Sink, statements};
+use super::shapes::Shapes;
 use super::{MAX_DEPTH, docs, statement, value};
 use crate::span::{SourceId, Span};
 use pest::Parser;
 use pest::iterators::{Pair, Pairs};
 use smol_str::SmolStr;
+use std::borrow::Cow;
 use std::cell::{Cell, RefCell};
 
 #[derive(pest_derive::Parser)]
@@ -47,12 +49,32 @@ pub(super) struct Source<'t> {
 pub(super) fn items(source: Source, items: &[Item]) -> (Vec<Entry>, Sink) {
     let mut entries = Vec::with_capacity(items.len());
     let mut sink = Sink::new();
+    let mut shapes = Shapes::default();
     for item in items {
+        // An item with comments inside has places that its text alone does not tell.
+        let plain = matches!(item.text, Cow::Borrowed(_)) && !item.skipped && item.depth < DEEP;
+        let start = item.start as u32;
+        if plain && let Some(mut copies) = shapes.recall(&item.text, start) {
+            copies.iter_mut().for_each(|entry| document(source, entry));
+            entries.append(&mut copies);
+            continue;
+        }
         let (built, slips) = on_enough_stack(item, || entries_of(source, item));
+        if plain && slips.len() == 0 {
+            shapes.learn(&built, start);
+        }
         entries.extend(built);
         sink.append(slips);
     }
     (entries, sink)
+}
+
+/// Gives a copy of a statement its own doc.
+fn document(source: Source, entry: &mut Entry) {
+    if let Entry::Statement(statement) = entry {
+        let whole = statement.prefixes.first().map_or(statement.span, |prefix| prefix.span);
+        statement.doc = docs::of(&source, whole, statement.span);
+    }
 }
 
 /// The one expression that an item is.

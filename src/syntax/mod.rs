@@ -2,16 +2,23 @@
 //!
 //! Parsing never fails: it returns a tree and what was wrong. Top-level items stand alone: `cut` finds
 //! them in one pass, each is then parsed by the grammar in `grammar/rt.pest` and turned into [`ast`] by
-//! `build`, `statement` and `value`, a large text's items in parallel. What is said of slips is in `errors`.
+//! `build`, `statement` and `value`, a large text's items in parallel. `shapes` copies the tree of an item that
+//! differs from an earlier one in its literals only. What is said of slips is in `errors`.
+//! `format` goes the other way.
 
 pub mod ast;
 mod build;
 mod cut;
 mod docs;
 mod errors;
+mod format;
+mod places;
+mod shapes;
 mod slips;
 mod statement;
 mod value;
+
+pub use format::{WIDTH, format};
 
 use crate::diagnostic::Diagnostic;
 use crate::span::{SourceId, Span};

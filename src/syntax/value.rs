@@ -1,7 +1,7 @@
 //! Expressions: the flat list that the grammar gives becomes a tree by precedence.
 
 use super::MAX_DEPTH;
-use super::ast::{Argument, BinaryOp, Expr, ExprKind, Name, UnaryOp};
+use super::ast::{Argument, BinaryOp, Expr, ExprKind, Name, Path, UnaryOp};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements};
 use crate::span::Span;
@@ -185,26 +185,33 @@ fn reference(builder: &Builder, pair: Node) -> Deep<Expr> {
             invalid(builder.span(&word))
         }
         (name, None) => leaf(ExprKind::Name(SmolStr::new(name))),
-        (_, Some(next)) if next.as_rule() != Rule::arguments => {
+        (_, Some(next)) => {
             let mut kind = vec![builder.name(&word)];
             let mut body = next;
             for next in inner {
                 kind.push(builder.name(&body));
                 body = next;
             }
+            if body.as_rule() == Rule::arguments {
+                return call(builder, kind, body, span);
+            }
             let (construct, depth) = builder.construct(kind, body);
             let kind = ExprKind::Construct(Box::new(construct));
             checked(builder, Expr { kind, span }, depth, span)
         }
-        (_, Some(arguments)) => {
-            let elements = elements(builder, arguments);
-            let depth = elements.depth + 1;
-            let call_end = elements.unit.as_ref().map_or(span, |_| Span { end: elements.end, ..span });
-            let kind = ExprKind::Call { function: builder.name(&word), arguments: elements.arguments };
-            let (call, depth) = checked(builder, Expr { kind, span: call_end }, depth, span);
-            scaled(builder, call, depth, elements.unit, span)
-        }
     }
+}
+
+/// A call, behind the path to its function.
+fn call(builder: &Builder, mut path: Vec<Name>, arguments: Node, span: Span) -> Deep<Expr> {
+    let elements = elements(builder, arguments);
+    let depth = elements.depth + 1;
+    let call_end = elements.unit.as_ref().map_or(span, |_| Span { end: elements.end, ..span });
+    let rest = path.split_off(1);
+    let first = path.pop().expect("a function has a name");
+    let kind = ExprKind::Call { function: Path { first, rest }, arguments: elements.arguments };
+    let (call, depth) = checked(builder, Expr { kind, span: call_end }, depth, span);
+    scaled(builder, call, depth, elements.unit, span)
 }
 
 /// `if condition then value else value`

@@ -4,36 +4,42 @@ use crate::check::functions::Function;
 use crate::check::make::suggested_unit;
 use crate::check::types::{Element, Type, describe_wanted, list};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::schema::{Field, FieldType, Word};
+use crate::schema::{FieldType, Word};
 use crate::span::Span;
 use crate::syntax::ast::Name;
 use crate::units::{self, Dim};
 
 /// A field's value is of another type. `text` is the value as written.
-pub(in crate::check) fn mismatch(field: &Field, span: Span, text: &str, ty: Type) -> Diagnostic {
-    let wanted = describe_wanted(field.ty);
-    let message = format!("`{}` wants {wanted}, this is {}", field.name, ty.describe());
-    let code = mismatch_code(field.ty, ty);
+pub(in crate::check) fn mismatch(
+    name: &str,
+    field: FieldType,
+    span: Span,
+    text: &str,
+    ty: &Type,
+) -> Diagnostic {
+    let wanted = describe_wanted(field);
+    let message = format!("`{name}` wants {wanted}, this is {}", ty.describe());
+    let code = mismatch_code(field, ty);
     let diagnostic = Diagnostic::new(code, message, span).at(ty.describe());
     match code {
-        Code::E0202 | Code::E0204 => with_unit(diagnostic, text, suggested_unit(field.ty)),
-        Code::E0203 => match suggested_unit(field.ty) {
-            Some(unit) => diagnostic.help(format!("write {wanted}, such as `{}`", sample(field.ty, &unit))),
+        Code::E0202 | Code::E0204 => with_unit(diagnostic, text, suggested_unit(field)),
+        Code::E0203 => match suggested_unit(field) {
+            Some(unit) => diagnostic.help(format!("write {wanted}, such as `{}`", sample(field, &unit))),
             None if text.starts_with('(') => diagnostic.help("leave the unit away: a direction has none"),
             None => diagnostic.help("divide by a unit to make it a plain number: `x / 1m`"),
         },
         Code::E0205 => diagnostic.help(color_help(text, ty)),
         Code::E0206 => diagnostic.help("whole numbers have no decimal point; `round(…)` makes one"),
-        Code::E0305 => match field.ty {
+        Code::E0305 => match field {
             FieldType::Named(kind) => {
                 diagnostic.help(format!("name one that stands by itself: `{kind} NAME {{ … }}`"))
             }
             _ => diagnostic.help("name a thing that stands in the picture: `sphere ball { … }`"),
         },
-        _ => match (field.ty, ty) {
+        _ => match (field, ty) {
             (FieldType::Choice(words), _) => diagnostic.help(word_list(words)),
             (FieldType::Tuple(..) | FieldType::IntTuple(_), _) => {
-                diagnostic.help(format!("write `{}: {}`", field.name, example_tuple(field.ty)))
+                diagnostic.help(format!("write `{}: {}`", name, example_tuple(field)))
             }
             (FieldType::Made(_), _) => diagnostic.help("such as `diffuse { color: #d94f30 }`"),
             (FieldType::Transform, _) => {
@@ -47,7 +53,7 @@ pub(in crate::check) fn mismatch(field: &Field, span: Span, text: &str, ty: Type
     }
 }
 
-fn mismatch_code(wanted: FieldType, ty: Type) -> Code {
+fn mismatch_code(wanted: FieldType, ty: &Type) -> Code {
     match (wanted, ty) {
         (FieldType::OneOf(types), _) => {
             let codes = types.iter().map(|wanted| mismatch_code(*wanted, ty));
@@ -59,8 +65,8 @@ fn mismatch_code(wanted: FieldType, ty: Type) -> Code {
         {
             Code::E0206
         }
-        (FieldType::Scalar(dim), Type::Scalar(e)) => unit_code(dim, e),
-        (FieldType::Tuple(m, dim), Type::Tuple(n, e)) if m == n => unit_code(dim, e),
+        (FieldType::Scalar(dim), Type::Scalar(e)) => unit_code(dim, *e),
+        (FieldType::Tuple(m, dim), Type::Tuple(n, e)) if m == *n => unit_code(dim, *e),
         (FieldType::Int, Type::Scalar(_)) | (FieldType::IntTuple(2), Type::Tuple(2, _)) => Code::E0203,
         (FieldType::Target, Type::Made(..)) | (FieldType::Target | FieldType::Named(_), Type::Thing(_)) => {
             Code::E0305
@@ -116,7 +122,7 @@ fn word_list(words: &[Word]) -> String {
     list(words.iter().map(|word| format!("`{}`", word.name)).collect(), "or")
 }
 
-fn color_help(text: &str, ty: Type) -> String {
+fn color_help(text: &str, ty: &Type) -> String {
     match ty {
         Type::Tuple(..) if text.starts_with('(') && text.ends_with(')') && text.len() < 60 => {
             format!("write `rgb{text}` for a linear colour, `srgb{text}` for one as colour pickers show it")
@@ -140,7 +146,7 @@ pub(in crate::check) fn component(span: Span, text: &str, found: Element, others
     }
 }
 
-pub(in crate::check) fn component_not_number(span: Span, ty: Type) -> Diagnostic {
+pub(in crate::check) fn component_not_number(span: Span, ty: &Type) -> Diagnostic {
     Diagnostic::new(
         Code::E0201,
         format!("a component is a number or a quantity, this is {}", ty.describe()),
@@ -154,7 +160,7 @@ pub(in crate::check) fn long_tuple(span: Span, count: usize) -> Diagnostic {
         .at(format!("{count} components"))
 }
 
-pub(in crate::check) fn unit_on_quantity(unit: &Name, value: Span, ty: Type) -> Diagnostic {
+pub(in crate::check) fn unit_on_quantity(unit: &Name, value: Span, ty: &Type) -> Diagnostic {
     let message = match ty {
         Type::Scalar(_) | Type::Tuple(..) => "this has a unit already".to_string(),
         _ => format!("a unit goes on numbers, this is {}", ty.describe()),
@@ -165,9 +171,11 @@ pub(in crate::check) fn unit_on_quantity(unit: &Name, value: Span, ty: Type) -> 
         .help("remove one of them")
 }
 
-pub(in crate::check) fn no_member(member: &Name, ty: Type) -> Diagnostic {
+pub(in crate::check) fn no_member(member: &Name, ty: &Type) -> Diagnostic {
     let help = match ty {
         Type::Tuple(2, _) => "it has `.x` and `.y`",
+        Type::Bounds => "it has `.min`, `.max`, `.center` and `.size`",
+        Type::Invalid => "",
         Type::Tuple(..) => "it has `.x`, `.y` and `.z`",
         _ => "a triple has `.x`, `.y` and `.z`",
     };
@@ -176,12 +184,12 @@ pub(in crate::check) fn no_member(member: &Name, ty: Type) -> Diagnostic {
         .help(help)
 }
 
-pub(in crate::check) fn operand(symbol: &str, wanted: &str, span: Span, ty: Type) -> Diagnostic {
+pub(in crate::check) fn operand(symbol: &str, wanted: &str, span: Span, ty: &Type) -> Diagnostic {
     Diagnostic::new(Code::E0201, format!("`{symbol}` wants {wanted}, this is {}", ty.describe()), span)
         .at(ty.describe())
 }
 
-pub(in crate::check) fn operands(symbol: &str, at: Span, [a, b]: [(Span, Type); 2]) -> Diagnostic {
+pub(in crate::check) fn operands(symbol: &str, at: Span, [a, b]: [(Span, &Type); 2]) -> Diagnostic {
     let message = format!("`{symbol}` cannot join {} and {}", a.1.describe(), b.1.describe());
     Diagnostic::new(Code::E0201, message, at)
         .at("these do not fit")
@@ -189,7 +197,7 @@ pub(in crate::check) fn operands(symbol: &str, at: Span, [a, b]: [(Span, Type); 
         .label(b.0, b.1.describe())
 }
 
-pub(in crate::check) fn sum(symbol: &str, at: Span, [a, b]: [(Span, Type); 2]) -> Diagnostic {
+pub(in crate::check) fn sum(symbol: &str, at: Span, [a, b]: [(Span, &Type); 2]) -> Diagnostic {
     let message =
         format!("`{symbol}` wants two of one dimension, these are {} and {}", a.1.describe(), b.1.describe());
     let diagnostic = Diagnostic::new(Code::E0207, message, at).at("these do not add up");
@@ -204,7 +212,7 @@ pub(in crate::check) fn exponent(at: Span) -> Diagnostic {
     Diagnostic::new(Code::E0207, "the exponents of this unit grow beyond reason", at).at("too high a power")
 }
 
-pub(in crate::check) fn root(span: Span, ty: Type) -> Diagnostic {
+pub(in crate::check) fn root(span: Span, ty: &Type) -> Diagnostic {
     Diagnostic::new(Code::E0207, format!("the root of {} has no unit", ty.describe()), span)
         .at(ty.describe())
         .help("the exponents must be even: the root of `m2` is `m`")
@@ -234,11 +242,11 @@ pub(in crate::check) fn argument(
     wanted: Dim,
     span: Span,
     text: &str,
-    ty: Type,
+    ty: &Type,
 ) -> Diagnostic {
     let message = format!("`{}` wants {wanted}, this is {}", function.name(), ty.describe());
     let code = match ty {
-        Type::Scalar(element) => unit_code(wanted, element),
+        Type::Scalar(element) => unit_code(wanted, *element),
         _ => Code::E0201,
     };
     let diagnostic = Diagnostic::new(code, message, span).at(ty.describe());
@@ -254,12 +262,12 @@ pub(in crate::check) fn argument(
 pub(in crate::check) fn triple_wanted(
     function: Function,
     span: Span,
-    ty: Type,
+    ty: &Type,
     dim: Option<Dim>,
 ) -> Diagnostic {
     let of = dim.map_or("a triple".to_string(), |dim| describe_wanted(FieldType::Tuple(3, dim)));
     let code = match (ty, dim) {
-        (Type::Tuple(3, element), Some(dim)) => unit_code(dim, element),
+        (Type::Tuple(3, element), Some(dim)) => unit_code(dim, *element),
         _ => Code::E0201,
     };
     Diagnostic::new(code, format!("`{}` wants {of}, this is {}", function.name(), ty.describe()), span)

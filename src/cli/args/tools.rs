@@ -3,15 +3,48 @@
 use super::values::{Denied, denied};
 use clap::{Args, ValueEnum};
 use clap_complete::Shell;
+use rt_lang::Options;
+use rt_lang::eval::Limits;
+use rt_lang::lower::Overrides;
 use std::path::PathBuf;
 
 /// What a scene may read.
-#[derive(Args, Clone, Debug, Default)]
+#[derive(Args, Clone, Debug)]
 pub struct Reading {
     /// Lets the scene read files below this folder only. By default below its own; a scene from standard input reads
     /// below the current folder.
     #[arg(long, value_name = "DIR")]
     pub root: Option<PathBuf>,
+
+    /// Sets a `param` of the scene: `--set n=12`, `--set 'at=(0, 1, 0)m'`. The value is checked as if it stood in the
+    /// scene. May be given several times.
+    #[arg(long, value_name = "NAME=EXPR")]
+    pub set: Vec<String>,
+
+    /// Refuses scenes of more than this many things.
+    #[arg(long, value_name = "N", default_value_t = Limits::default().things, hide_short_help = true)]
+    pub max_things: usize,
+
+    /// Refuses parts, groups, imports and calls more levels deep than this.
+    #[arg(long, value_name = "N", default_value_t = Limits::default().levels, hide_short_help = true)]
+    pub max_levels: usize,
+
+    /// Refuses lists of more items than this.
+    #[arg(long, value_name = "N", default_value_t = Limits::default().items, hide_short_help = true)]
+    pub max_items: usize,
+
+    /// Refuses scenes that take more steps than this to evaluate.
+    #[arg(long, value_name = "N", default_value_t = Limits::default().steps, hide_short_help = true)]
+    pub max_steps: u64,
+}
+
+impl Reading {
+    /// What the compiler is told.
+    pub fn options(&self, overrides: Overrides) -> Options {
+        let Reading { max_things: things, max_levels: levels, max_items: items, max_steps: steps, .. } =
+            *self;
+        Options { overrides, set: self.set.clone(), limits: Limits { things, levels, items, steps } }
+    }
 }
 
 /// How messages are written, and which warnings are not let pass.

@@ -32,7 +32,7 @@ pub(super) fn ball(levels: u32) -> Arc<Mesh> {
 }
 
 pub(super) fn mesh(mesh: &Arc<Mesh>, matrix: DMat3, at: DVec3, smooth: bool) -> Shape {
-    Shape::Mesh(Box::new(Instance { mesh: mesh.clone(), placed: *placed(matrix, at), smooth }))
+    Shape::Mesh(Box::new(Instance::new(mesh.clone(), *placed(matrix, at), smooth)))
 }
 
 fn skewed() -> DMat3 {

@@ -16,6 +16,9 @@ pub struct Instance {
     pub placed: Placed,
     /// Whether it is shaded as if it were round, by the normals of its vertices.
     pub smooth: bool,
+    /// The box around it in the world, which follows from the others.
+    #[serde(skip)]
+    bounds: Bounds,
 }
 
 fn by_content<S: Serializer>(mesh: &Arc<Mesh>, serializer: S) -> Result<S::Ok, S::Error> {
@@ -23,6 +26,17 @@ fn by_content<S: Serializer>(mesh: &Arc<Mesh>, serializer: S) -> Result<S::Ok, S
 }
 
 impl Instance {
+    /// A mesh in its place.
+    pub fn new(mesh: Arc<Mesh>, placed: Placed, smooth: bool) -> Instance {
+        let mut instance = Instance { mesh, placed, smooth, bounds: Bounds::EMPTY };
+        for triangle in instance.triangles() {
+            for p in instance.corners(triangle) {
+                instance.bounds = instance.bounds.union(Bounds { min: p, max: p });
+            }
+        }
+        instance
+    }
+
     /// The corners of a triangle in the world.
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
         self.mesh.corners(triangle).map(|p| self.placed.world_from_object.transform_point3(p))
@@ -30,11 +44,12 @@ impl Instance {
 
     /// The box around it in object space.
     pub fn object_bounds(&self) -> Bounds {
-        around(self.triangles().flat_map(|triangle| self.mesh.corners(triangle)))
+        let [min, max] = self.mesh.extent();
+        Bounds { min, max }
     }
 
     pub(super) fn bounds(&self) -> Bounds {
-        around(self.triangles().flat_map(|triangle| self.corners(triangle)))
+        self.bounds
     }
 
     pub(super) fn area(&self) -> f64 {
@@ -73,8 +88,4 @@ impl Instance {
 /// The area of a triangle.
 pub fn area([a, b, c]: [DVec3; 3]) -> f64 {
     0.5 * (b - a).cross(c - a).length()
-}
-
-fn around(points: impl Iterator<Item = DVec3>) -> Bounds {
-    points.fold(Bounds::EMPTY, |sum, p| sum.union(Bounds { min: p, max: p }))
 }

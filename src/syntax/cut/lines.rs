@@ -167,6 +167,9 @@ impl<'t> Cutter<'t> {
     /// `kind {`, `kind name {`, `name =`, `let name` and the like
     fn begins_item(&self) -> bool {
         let Some((word, next)) = self.word_and_next(self.at) else { return false };
+        if self.goes_on() {
+            return false;
+        }
         let opens = |at| matches!(self.byte(at), b'{' | b'=') && self.byte(at + 1) != b'=';
         match self.word_and_next(next) {
             Some((_, after)) => self.begins_statement() || opens(after),

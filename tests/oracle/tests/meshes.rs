@@ -33,7 +33,7 @@ pub(super) fn ball(levels: u32) -> Arc<Mesh> {
 }
 
 pub(super) fn mesh(mesh: &Arc<Mesh>, matrix: DMat3, at: DVec3, smooth: bool) -> Shape {
-    Shape::Mesh(Box::new(Instance { mesh: mesh.clone(), placed: *placed(matrix, at), smooth }))
+    Shape::Mesh(Box::new(Instance::new(mesh.clone(), *placed(matrix, at), smooth)))
 }
 
 fn skewed() -> DMat3 {
@@ -65,7 +65,7 @@ fn the_tree_of_a_mesh_finds_what_its_triangles_give() {
         }
         assert!(accel.closest(&ray).is_none());
     }
-    assert!(met > 1000);
+    assert!(met > 200, "{met}");
 }
 
 #[test]

@@ -22,7 +22,7 @@ fn painted(shape: Shape, texture: Texture, world_from_object: DAffine3) -> Scene
 }
 
 fn shown(scene: &Scene, face: Face, p: DVec3, n: DVec3) -> Rgb {
-    let point = SurfacePoint { p, n };
+    let point = SurfacePoint::new(p, n);
     let spot = Spot::new(scene, &scene.primitives[0], face, &point);
     paint(scene, Paint::Texture(TextureId(scene.textures.len() as u32 - 1)), &spot)
 }

@@ -1,0 +1,57 @@
+//! What must hold of any text. The fuzz targets try it on texts they make up, `tests/fuzz.rs` on those that were
+//! found, and the tests of the formatter on generated ones.
+
+use crate::dump;
+use rt_lang::diagnostic::Diagnostic;
+use rt_lang::eval::Limits;
+use rt_lang::files::NoFiles;
+use rt_lang::source::{Source, Sources};
+use rt_lang::span::SourceId;
+use rt_lang::syntax::ast::File;
+use rt_lang::syntax::{self, parse_expression};
+use rt_lang::{Options, compile as compile_scene};
+
+const SOURCE: SourceId = SourceId(0);
+
+/// Parsing ends, and every place lies in the text, between characters.
+pub fn parse(text: &str) {
+    let (file, slips) = syntax::parse(SOURCE, text);
+    dump::tree(text, &file);
+    dump::diagnostics(text, &slips);
+    let (expr, slips) = parse_expression(SOURCE, text);
+    dump::expression(text, &expr);
+    dump::diagnostics(text, &slips);
+}
+
+/// Laid out again, a text is the same; its comments and its tree are those of the text before; and what has a slip
+/// still has it.
+pub fn fmt(text: &str) {
+    let (formatted, slips) = syntax::format(SOURCE, text);
+    let (before, _) = syntax::parse(SOURCE, text);
+    let (after, left) = syntax::parse(SOURCE, &formatted);
+    assert_eq!(said(&slips), said(&left), "slips\n{text}\n---\n{formatted}");
+    assert_eq!(comments(text, &before), comments(&formatted, &after), "comments\n{text}\n---\n{formatted}");
+    let (shape, again) = (dump::shape(text, &before), dump::shape(&formatted, &after));
+    assert_eq!(shape, again, "tree\n{text}\n---\n{formatted}");
+    assert_eq!(syntax::format(SOURCE, &formatted).0, formatted, "again\n{text}");
+}
+
+/// Compiling ends, and says something of every text that gives no scene.
+pub fn compile(text: &str) {
+    let mut sources = Sources::default();
+    let id = sources.add(Source::new("fuzz.rt", text));
+    // Within what a fuzzer can wait for.
+    let limits = Limits { things: 10_000, levels: 16, items: 10_000, steps: 100_000 };
+    let options = Options { limits, ..Options::default() };
+    let compiled = compile_scene(&NoFiles, &mut sources, id, &options);
+    assert!(compiled.scene.is_some() || !compiled.diagnostics.is_empty());
+    dump::diagnostics(text, &compiled.diagnostics);
+}
+
+fn said(slips: &[Diagnostic]) -> Vec<String> {
+    slips.iter().map(|slip| format!("{} {}", slip.code.as_str(), slip.message)).collect()
+}
+
+fn comments(text: &str, file: &File) -> Vec<String> {
+    file.comments.iter().map(|comment| text[comment.span.range()].trim_end().to_string()).collect()
+}

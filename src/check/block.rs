@@ -1,0 +1,221 @@
+//! Statements: the bodies of files, parts, groups and branches.
+
+use super::order::{dependencies, sort};
+use super::program::{Block, Expr, Inside, InsideId, InsideName, Statement, StatementKind};
+use super::scope::{Item, Place};
+use super::types::{Element, Kind, Type};
+use super::{Checker, errors};
+use crate::schema::Category;
+use crate::syntax::ast::{self, Entry, Keyword, Name, StatementKind as Tree};
+use smol_str::SmolStr;
+use std::collections::BTreeMap;
+
+/// What a turn of a loop counts by itself, in expressions: about as long as it takes.
+const TURN: u64 = 9;
+
+impl<'a> Checker<'a> {
+    /// The body of a branch of `for` or `if`, or of a file: statements, and no fields.
+    pub(super) fn items<'t>(&mut self, entries: &'t [Entry], inside: &str) -> Vec<Item<'t>> {
+        let mut items = vec![];
+        for entry in entries {
+            match entry {
+                Entry::Statement(statement) => items.push(Item::Statement(statement)),
+                Entry::Broken(broken) => items.push(Item::Broken(broken)),
+                Entry::Field(field) => {
+                    self.report(errors::field_of_nothing(&field.name, inside));
+                    self.infer(&field.value);
+                }
+            }
+        }
+        items
+    }
+
+    /// Opens a scope with these statements and checks them. [`Checker::close`] ends it.
+    pub(super) fn open(&mut self, items: &[Item], place: Place) -> Block {
+        let scope = self.declare(items, place);
+        let declared: BTreeMap<SmolStr, usize> =
+            scope.names.iter().map(|(name, &known)| (name.clone(), scope.known[known].item)).collect();
+        let settings = if place == Place::Main { self.settings } else { &[] };
+        let setting = |item: &Item| {
+            let Item::Statement(ast::Statement { kind: Tree::Param { .. }, .. }) = item else { return None };
+            let name = item.name()?;
+            settings.iter().find(|setting| setting.name.text == name.text).map(|setting| &setting.value)
+        };
+        let (order, cycles) = sort(&dependencies(items, &declared, setting));
+        let known: BTreeMap<usize, usize> =
+            scope.known.iter().enumerate().map(|(known, name)| (name.item, known)).collect();
+        self.scopes.push(scope);
+        for cycle in cycles {
+            let names: Vec<&Name> = cycle.iter().filter_map(|&item| items[item].name()).collect();
+            self.report(errors::cycle(&names));
+        }
+        let mut statements: Vec<Option<Statement>> = items.iter().map(|_| None).collect();
+        for &index in &order {
+            let slot = known.get(&index).map(|&known| self.current().known[known].slot);
+            let (statement, ty) = self.item(&items[index], place, slot);
+            if let Some(&known) = known.get(&index) {
+                self.current().known[known].ty = ty;
+            }
+            statements[index] = Some(statement);
+        }
+        // What lies on a cycle has no place in the order, and is already of invalid type.
+        let missing = |item: &Item| {
+            let span = match item {
+                Item::Statement(statement) => statement.span,
+                Item::Broken(broken) => broken.span,
+            };
+            Statement { kind: StatementKind::Invalid, span, off: false, solo: false }
+        };
+        let statements = statements.into_iter().zip(items);
+        let statements = statements.map(|(found, item)| found.unwrap_or_else(|| missing(item))).collect();
+        let sorted = order.windows(2).all(|pair| pair[0] < pair[1]);
+        let order = if sorted { vec![] } else { order.into_iter().map(|index| index as u32).collect() };
+        Block { statements, order }
+    }
+
+    /// A body of `for` or `if`.
+    fn branch(&mut self, body: &ast::Body, word: &str) -> Block {
+        let items = self.items(&body.entries, word);
+        let mut block = self.open(&items, Place::Branch);
+        self.close(Some(&mut block));
+        block
+    }
+
+    /// The names of the innermost scope, for paths that lead inside.
+    pub(super) fn keep_names(&mut self) -> InsideId {
+        let scope = self.current();
+        let names = scope.names.iter().map(|(name, &known)| {
+            let known = &scope.known[known];
+            (name.clone(), InsideName { slot: known.slot, ty: known.ty.clone() })
+        });
+        let inside = Inside { names: names.collect() };
+        self.program.insides.push(inside);
+        InsideId(self.program.insides.len() as u32 - 1)
+    }
+
+    /// One statement, and what its name means.
+    fn item(&mut self, item: &Item, place: Place, slot: Option<usize>) -> (Statement, Type) {
+        let statement = match item {
+            Item::Statement(statement) => *statement,
+            Item::Broken(broken) => {
+                let kind = StatementKind::Invalid;
+                return (Statement { kind, span: broken.span, off: false, solo: false }, Type::Invalid);
+            }
+        };
+        let (off, solo) = self.prefixes(statement);
+        let (kind, ty) = match &statement.kind {
+            Tree::Thing { construct, name } => self.drawn(construct, name.as_ref(), slot),
+            Tree::Definition { keyword, name, value } => {
+                let (checked, ty) = self.infer(value);
+                self.keyword_fits(*keyword, name, value, &ty);
+                (self.define(slot, checked), ty)
+            }
+            Tree::Param { name, ty, default, range } => self.param(name, ty, default, range.as_ref(), place),
+            Tree::Part { name, body } => self.part(name, body, statement, place),
+            Tree::Import { name, .. } => self.import(statement, name, place),
+            Tree::Function { name, parameters, result, value } => {
+                self.function(name, parameters, result, value, statement, place)
+            }
+            Tree::For { variable, list, body } => (self.repeat(variable, list, body), Type::Invalid),
+            Tree::If { condition, then, otherwise } => {
+                let condition = self.condition("if", condition);
+                let then = self.branch(then, "if");
+                let otherwise = otherwise.as_ref().map(|body| self.branch(body, "else"));
+                let otherwise = otherwise.unwrap_or_default();
+                (StatementKind::If { condition, then, otherwise }, Type::Invalid)
+            }
+            Tree::Assert { condition, message } => {
+                let condition = self.condition("assert", condition);
+                let message = message.as_ref().map(|message| self.message(message));
+                (StatementKind::Assert { condition, message }, Type::Invalid)
+            }
+        };
+        (Statement { kind, span: statement.span, off, solo }, ty)
+    }
+
+    fn define(&self, slot: Option<usize>, value: Expr) -> StatementKind {
+        match slot {
+            Some(slot) => StatementKind::Define { slot, value },
+            None => StatementKind::Invalid,
+        }
+    }
+
+    fn keyword_fits(&mut self, keyword: Keyword, name: &Name, value: &ast::Expr, ty: &Type) {
+        let material = matches!(ty, Type::Made(making) if making.kind.category() == Category::Material);
+        if *ty == Type::Invalid || material == (keyword == Keyword::Material) {
+            return;
+        }
+        self.report(errors::wrong_keyword(keyword, name, value.span, ty));
+    }
+
+    /// What must be true or false.
+    pub(super) fn condition(&mut self, word: &str, condition: &ast::Expr) -> Expr {
+        let (checked, ty) = self.infer(condition);
+        if !matches!(ty, Type::Bool | Type::Invalid) {
+            self.report(errors::operand(word, "true or false", condition.span, &ty));
+            return Expr::invalid(condition.span);
+        }
+        checked
+    }
+
+    fn message(&mut self, message: &ast::Expr) -> Expr {
+        let (checked, ty) = self.infer(message);
+        if !matches!(ty, Type::Text | Type::Invalid) {
+            self.report(errors::operand("assert", "a text to say", message.span, &ty));
+        }
+        checked
+    }
+
+    fn repeat(&mut self, variable: &Name, list: &ast::Expr, body: &ast::Body) -> StatementKind {
+        let before = self.nodes;
+        let (list_found, ty) = self.infer(list);
+        let item = match &ty {
+            Type::List(item) => (**item).clone(),
+            Type::Invalid => Type::Invalid,
+            ty => {
+                self.report(errors::not_a_list(list.span, ty));
+                Type::Invalid
+            }
+        };
+        let item = if item == Type::Scalar(Element::Zero) { Type::Scalar(Element::Int) } else { item };
+        let mut scope = self.scope(Place::Parameters);
+        let slot = self.declare_alone(&mut scope, variable, item, true);
+        self.scopes.push(scope);
+        let body = self.branch(body, "for");
+        self.close(None);
+        StatementKind::For { slot, list: list_found, body, cost: self.nodes - before + TURN }
+    }
+
+    /// A thing in statement position.
+    fn drawn(
+        &mut self,
+        construct: &ast::Construct,
+        name: Option<&Name>,
+        slot: Option<usize>,
+    ) -> (StatementKind, Type) {
+        let (make, ty) = self.make(construct, name);
+        let Type::Made(making) = ty else { return (StatementKind::Invalid, Type::Invalid) };
+        let span = path_span(&construct.kind);
+        let category = making.kind.category();
+        let inner = self.scopes.iter().any(|scope| matches!(scope.place, Place::Part | Place::Group));
+        match making.kind {
+            _ if category == Category::Material => self.report(errors::material_drawn(&construct.kind)),
+            Kind::BuiltIn(kind) if category == Category::Block && inner => {
+                self.report(errors::block_inside(&construct.kind, kind))
+            }
+            _ => self.complete(making, span),
+        }
+        (StatementKind::Draw { slot, make: Box::new(make) }, Type::Thing(making))
+    }
+}
+
+/// All of a path.
+pub(super) fn path_span(path: &ast::Path) -> crate::span::Span {
+    path.rest.last().map_or(path.first.span, |last| path.first.span.to(last.span))
+}
+
+/// A path as written.
+pub(super) fn path_text(path: &ast::Path) -> String {
+    let names = std::iter::once(&path.first).chain(&path.rest);
+    names.map(|name| name.text.as_str()).collect::<Vec<_>>().join(".")
+}

@@ -1,0 +1,142 @@
+//! What can be wrong with params, parts, imports, functions and prefixes.
+
+use super::{closest, quoted};
+use crate::check::declared::TYPES;
+use crate::check::types::Type;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::span::Span;
+use crate::syntax::ast::{Name, Prefix};
+
+pub(in crate::check) fn unknown_type(name: &Name) -> Diagnostic {
+    let known: Vec<&str> = TYPES.iter().map(|(name, _)| *name).collect();
+    let diagnostic =
+        Diagnostic::new(Code::E0101, format!("unknown type `{}`", name.text), name.span).at("not known here");
+    match closest(&name.text, &known) {
+        Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
+        None => diagnostic.help(format!("the types are {}, and lists of them: `[length]`", quoted(&known))),
+    }
+}
+
+/// A `part`, `param`, `import` or `fn` where none can stand.
+pub(in crate::check) fn not_here(word: &str, name: &Name, place: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("`{word} {}` does not belong here", name.text), name.span)
+        .at("not inside a thing or a branch")
+        .help(format!("a `{word}` belongs to {place}"))
+}
+
+pub(in crate::check) fn field_of_part(name: &Name) -> Diagnostic {
+    Diagnostic::new(Code::E0301, format!("a part has no field `{}`", name.text), name.span)
+        .at("unknown field")
+        .help(format!("what can be set is declared: `param {}: length = 10cm`", name.text))
+}
+
+pub(in crate::check) fn mismatch_declared(name: &str, wanted: &str, span: Span, ty: &Type) -> Diagnostic {
+    Diagnostic::new(Code::E0201, format!("`{name}` wants {wanted}, this is {}", ty.describe()), span)
+        .at(ty.describe())
+}
+
+pub(in crate::check) fn not_a_range(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0201, "a range goes from one value to another", span)
+        .at("no range")
+        .help("write `in 1 to 20`; both ends are included")
+}
+
+pub(in crate::check) fn range_of_what(span: Span, what: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0201, format!("only numbers and quantities have a range, this is {what}"), span)
+        .at("no range here")
+        .help("remove it, or say with `assert` what must hold")
+}
+
+/// A literal outside a range of literals.
+pub(in crate::check) fn outside_range(name: &str, range: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0401, format!("`{name}` must lie in {range}"), span).at("out of range")
+}
+
+pub(in crate::check) fn unknown_prefix(name: &Name) -> Diagnostic {
+    let known = ["off", "solo", "allow"];
+    let diagnostic = Diagnostic::new(Code::E0101, format!("unknown prefix `@{}`", name.text), name.span)
+        .at("not known here");
+    match closest(&name.text, &known) {
+        Some(guess) => diagnostic.help(format!("did you mean `@{guess}`?")).fix(name.span, guess),
+        None => diagnostic.help("there are `@off`, `@solo` and `@allow(code, \"why\")`"),
+    }
+}
+
+pub(in crate::check) fn prefix_arguments(prefix: &Prefix) -> Diagnostic {
+    let word = &prefix.name.text;
+    Diagnostic::new(Code::E0201, format!("`@{word}` takes no arguments"), prefix.span)
+        .at("arguments here")
+        .help(format!("write `@{word}`"))
+        .fix(prefix.span, format!("@{word}"))
+}
+
+pub(in crate::check) fn prefix_on_what(prefix: &Prefix) -> Diagnostic {
+    let word = &prefix.name.text;
+    Diagnostic::new(Code::E0201, format!("`@{word}` stands before what is drawn"), prefix.span)
+        .at("nothing is drawn here")
+        .help("put it before a thing, a `for` or an `if`")
+}
+
+pub(in crate::check) fn allow_arguments(prefix: &Prefix) -> Diagnostic {
+    Diagnostic::new(Code::E0201, "`@allow` takes a warning and the reason", prefix.span)
+        .at("which warning, and why?")
+        .help("such as `@allow(W0106, \"kept for later\")`")
+}
+
+pub(in crate::check) fn allow_error(code: Code, prefix: &Prefix) -> Diagnostic {
+    let message = format!("{} is an error, which cannot be allowed", code.as_str());
+    Diagnostic::new(Code::E0201, message, prefix.span)
+        .at("only warnings can be silenced")
+        .help("the picture cannot be made until it is mended")
+}
+
+pub(in crate::check) fn allow_what(name: &Name) -> Diagnostic {
+    let warnings = Code::ALL.iter().filter(|code| code.as_str().starts_with('W'));
+    let names: Vec<String> = warnings.flat_map(|code| [code.as_str().to_string(), code.name()]).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let diagnostic = Diagnostic::new(Code::E0101, format!("no warning is called `{}`", name.text), name.span)
+        .at("not known here");
+    match closest(&name.text, &names) {
+        Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
+        None => diagnostic.help("write its code, such as `W0106`"),
+    }
+}
+
+/// A `--set` that names no param of the file.
+pub(in crate::check) fn no_such_param(name: &Name, params: &[&str]) -> Diagnostic {
+    let diagnostic =
+        Diagnostic::new(Code::E0503, format!("the scene has no param `{}`", name.text), name.span)
+            .at("not declared");
+    match closest(&name.text, params) {
+        Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")),
+        None if params.is_empty() => {
+            diagnostic.help(format!("declare it in the scene: `param {}: number = 1`", name.text))
+        }
+        None => diagnostic.help(format!("its params are {}", quoted(params))),
+    }
+}
+
+pub(in crate::check) fn set_twice(name: &Name, first: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0503, format!("`{}` is set twice", name.text), name.span)
+        .at("again here")
+        .label(first, "first set here")
+        .help("keep one of them")
+}
+
+/// A `--set` that is not `name=value`.
+pub(in crate::check) fn malformed_setting(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0503, "a setting is a name, `=` and a value", span)
+        .at("not of this form")
+        .help("such as `--set count=12` or `--set \"size=15cm\"`")
+}
+
+pub(in crate::check) fn table_arguments(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0201, "`table` wants the path of a file, written out", span)
+        .at("no path")
+        .help("such as `table(\"points.csv\")`; its columns are known before anything is evaluated")
+}
+
+pub(in crate::check) fn bad_table(written: &Name, problem: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0501, format!("`{}` is no table: {problem}", written.text), written.span)
+        .at("cannot be used")
+}

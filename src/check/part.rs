@@ -1,0 +1,327 @@
+//! Params, parts, imports and functions: what is declared in one place and used in others.
+
+use super::declared::Declared;
+use super::program::StatementKind;
+use super::program::{Allow, Expr, ExprKind, FileId, FunctionBody, FunctionId, Param, Part, PartId};
+use super::scope::{Item, Place};
+use super::types::Type;
+use super::{Checker, errors};
+use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::schema::PLACED;
+use crate::syntax::ast::StatementKind as TreeStatement;
+use crate::syntax::ast::{self, BinaryOp, Entry, ExprKind as Tree, Name, Parameter, TypeName};
+
+/// What a call, or a use of a part, counts by itself, in expressions: about as long as it takes.
+const CALL: u64 = 9;
+
+impl<'a> Checker<'a> {
+    /// A whole file as a part.
+    pub(super) fn file(&mut self, tree: &ast::File, main: bool) -> PartId {
+        let items = self.items(&tree.body.entries, "a file");
+        let place = if main { Place::Main } else { Place::Imported };
+        self.body("", &items, &[], place, None)
+    }
+
+    /// `part name { … }`
+    pub(super) fn part(
+        &mut self,
+        name: &Name,
+        body: &ast::Body,
+        statement: &ast::Statement,
+        place: Place,
+    ) -> (StatementKind, Type) {
+        if !matches!(place, Place::Main | Place::Imported | Place::Part) {
+            self.report(errors::not_here("part", name, "a file or another part"));
+            return (StatementKind::Nothing, Type::Invalid);
+        }
+        let mut items = vec![];
+        let mut fields = vec![];
+        for entry in &body.entries {
+            match entry {
+                Entry::Statement(statement) => items.push(Item::Statement(statement)),
+                Entry::Broken(broken) => items.push(Item::Broken(broken)),
+                Entry::Field(field) => fields.push(field),
+            }
+        }
+        let part = self.body(&name.text, &items, &fields, Place::Part, statement.doc.clone());
+        (StatementKind::Nothing, Type::Part(part))
+    }
+
+    fn body(
+        &mut self,
+        name: &str,
+        items: &[Item],
+        fields: &[&ast::Field],
+        place: Place,
+        doc: Option<smol_str::SmolStr>,
+    ) -> PartId {
+        let before = self.nodes;
+        let params = std::mem::take(&mut self.params);
+        self.params = items
+            .iter()
+            .filter_map(|item| match item {
+                Item::Statement(statement) => match &statement.kind {
+                    TreeStatement::Param { name, .. } => Some((name.text.clone(), None)),
+                    _ => None,
+                },
+                Item::Broken(_) => None,
+            })
+            .collect();
+        self.begin_frame();
+        let mut block = self.open(items, place);
+        let fields = self.part_fields(fields);
+        let inside = self.keep_names();
+        self.close(Some(&mut block));
+        let slots = self.end_frame();
+        let found = std::mem::replace(&mut self.params, params);
+        // One that is not there had an error, such as a name twice.
+        let params = found.into_iter().filter_map(|(_, param)| param).collect();
+        let cost = self.nodes - before + CALL;
+        self.program.parts.push(Part { name: name.into(), params, block, fields, slots, inside, cost, doc });
+        PartId(self.program.parts.len() as u32 - 1)
+    }
+
+    /// What a part says of all its members: their material, and where they stand.
+    fn part_fields(&mut self, fields: &[&ast::Field]) -> Vec<(usize, Expr)> {
+        let mut found: Vec<(usize, Expr)> = vec![];
+        let mut first: [Option<crate::span::Span>; 3] = [None; 3];
+        for field in fields {
+            let Some(index) = PLACED.iter().position(|placed| placed.name == field.name.text) else {
+                self.report(errors::field_of_part(&field.name));
+                self.infer(&field.value);
+                continue;
+            };
+            let value = self.field_value(&PLACED[index], &field.value);
+            match first[index] {
+                Some(first) => self.report(errors::repeated(&field.name, first)),
+                None => {
+                    first[index] = Some(field.name.span);
+                    found.push((index, value));
+                }
+            }
+        }
+        found
+    }
+
+    /// `param name: type = default in low to high`
+    pub(super) fn param(
+        &mut self,
+        name: &Name,
+        ty: &TypeName,
+        default: &ast::Expr,
+        range: Option<&ast::Expr>,
+        place: Place,
+    ) -> (StatementKind, Type) {
+        let declared = self.declared(ty);
+        let mut value = self.declared_value(&name.text, &declared, default);
+        let range_found = range.and_then(|range| self.range(name, &declared, range));
+        let outside = range_found.as_ref().and_then(|range| self.literal_outside(&name.text, &value, range));
+        if let Some(diagnostic) = outside {
+            self.report(diagnostic);
+            value = Expr::invalid(value.span);
+        }
+        if !matches!(place, Place::Main | Place::Imported | Place::Part) {
+            self.report(errors::not_here("param", name, "a file or a part"));
+            return (StatementKind::Nothing, declared.ty());
+        }
+        let settings = if place == Place::Main { self.settings } else { &[] };
+        let set = settings.iter().find(|setting| setting.name.text == name.text);
+        if let Some(setting) = set {
+            value = self.declared_value(&name.text, &declared, &setting.value);
+        }
+        let ty = declared.ty();
+        let doc = self.doc.take();
+        let default = self.text(default.span).into();
+        let scope = self.current();
+        let Some(known) = scope.names.get(&name.text).map(|&known| &scope.known[known]) else {
+            return (StatementKind::Invalid, ty);
+        };
+        // A second one of the name is reported, and no param.
+        if known.name.span != name.span {
+            return (StatementKind::Nothing, ty);
+        }
+        let (slot, span) = (known.slot, name.span);
+        let index = self.params.iter().position(|(known, _)| *known == name.text);
+        let Some(index) = index else { return (StatementKind::Nothing, ty) };
+        let param = Param {
+            name: name.text.clone(),
+            declared,
+            default: value,
+            written: default,
+            set: set.is_some(),
+            range: range_found,
+            slot,
+            doc,
+            span,
+        };
+        self.params[index].1 = Some(param);
+        (StatementKind::Param(index), ty)
+    }
+
+    /// `low to high` behind `in`.
+    fn range(&mut self, name: &Name, declared: &Declared, range: &ast::Expr) -> Option<[Expr; 2]> {
+        let Tree::Binary { operator: BinaryOp::To, left, right, .. } = &range.kind else {
+            if !matches!(range.kind, Tree::Invalid) {
+                self.infer(range);
+                self.report(errors::not_a_range(range.span));
+            }
+            return None;
+        };
+        let [low, high] = [left, right].map(|end| self.declared_value(&name.text, declared, end));
+        if !matches!(declared.ty(), Type::Scalar(_) | Type::Invalid) {
+            self.report(errors::range_of_what(range.span, &declared.describe()));
+            return None;
+        }
+        (declared.ty() != Type::Invalid).then_some([low, high])
+    }
+
+    /// What can be seen to be out of range before anything is evaluated.
+    pub(super) fn literal_outside(&self, name: &str, value: &Expr, range: &[Expr; 2]) -> Option<Diagnostic> {
+        let (x, low, high) = (literal(value)?, literal(&range[0])?, literal(&range[1])?);
+        let written = || self.text(range[0].span.to(range[1].span));
+        (!(low..=high).contains(&x)).then(|| errors::outside_range(name, written(), value.span))
+    }
+
+    /// A value where a type was declared.
+    pub(super) fn declared_value(&mut self, name: &str, declared: &Declared, value: &ast::Expr) -> Expr {
+        let (checked, ty) = self.infer(value);
+        if ty == Type::Invalid || *declared == Declared::Invalid {
+            return Expr::invalid(value.span);
+        }
+        if !declared.accepts(&ty) {
+            let text = self.text(value.span);
+            let diagnostic = match declared {
+                Declared::Field(field) => errors::mismatch(name, *field, value.span, text, &ty),
+                other => errors::mismatch_declared(name, &other.describe(), value.span, &ty),
+            };
+            self.report(diagnostic);
+            return Expr::invalid(value.span);
+        }
+        if let Type::Made(making) = ty {
+            self.complete(making, value.span);
+        }
+        checked
+    }
+
+    /// `import "file.rt" as name`
+    pub(super) fn import(
+        &mut self,
+        statement: &ast::Statement,
+        name: &Name,
+        place: Place,
+    ) -> (StatementKind, Type) {
+        if !matches!(place, Place::Main | Place::Imported) {
+            self.report(errors::not_here("import", name, "the top level of a file"));
+            return (StatementKind::Nothing, Type::Invalid);
+        }
+        let file = self.imports.get(&statement.span).copied();
+        (StatementKind::Nothing, file.map_or(Type::Invalid, Type::File))
+    }
+
+    /// `fn name(…) -> type = value`
+    pub(super) fn function(
+        &mut self,
+        name: &Name,
+        parameters: &[Parameter],
+        result: &TypeName,
+        value: &ast::Expr,
+        statement: &ast::Statement,
+        place: Place,
+    ) -> (StatementKind, Type) {
+        if !matches!(place, Place::Main | Place::Imported | Place::Part) {
+            self.report(errors::not_here("fn", name, "a file or a part"));
+            return (StatementKind::Nothing, Type::Invalid);
+        }
+        let before = self.nodes;
+        self.begin_frame();
+        let mut scope = self.scope(Place::Parameters);
+        let mut taken = vec![];
+        for parameter in parameters {
+            let declared = self.declared(&parameter.ty);
+            self.declare_alone(&mut scope, &parameter.name, declared.ty(), false);
+            taken.push((parameter.name.text.clone(), declared));
+        }
+        let result = self.declared(result);
+        self.scopes.push(scope);
+        let value = self.declared_value(&name.text, &result, value);
+        self.close(None);
+        let slots = self.end_frame();
+        self.program.functions.push(FunctionBody {
+            name: name.text.clone(),
+            parameters: taken,
+            result,
+            value,
+            slots,
+            cost: self.nodes - before + CALL,
+            doc: statement.doc.clone(),
+        });
+        let id = FunctionId(self.program.functions.len() as u32 - 1);
+        (StatementKind::Nothing, Type::Function(id))
+    }
+
+    /// What stands before a statement: whether it is left out, and whether all others are.
+    pub(super) fn prefixes(&mut self, statement: &ast::Statement) -> (bool, bool) {
+        let (mut off, mut solo) = (false, false);
+        self.doc = statement.doc.clone();
+        for prefix in &statement.prefixes {
+            let word = prefix.name.text.as_str();
+            let drawn = matches!(
+                statement.kind,
+                TreeStatement::Thing { .. } | TreeStatement::For { .. } | TreeStatement::If { .. }
+            );
+            let asserts = matches!(statement.kind, TreeStatement::Assert { .. });
+            match word {
+                "off" | "solo" if prefix.arguments.is_some() => {
+                    self.report(errors::prefix_arguments(prefix));
+                }
+                "off" if drawn || asserts => off = true,
+                "solo" if drawn => solo = true,
+                "off" | "solo" => self.report(errors::prefix_on_what(prefix)),
+                "allow" => self.allow(prefix, statement),
+                "" => {}
+                _ => self.report(errors::unknown_prefix(&prefix.name)),
+            }
+        }
+        (off, solo)
+    }
+
+    fn allow(&mut self, prefix: &ast::Prefix, statement: &ast::Statement) {
+        let arguments = prefix.arguments.as_deref().unwrap_or(&[]);
+        let [code, why] = arguments else { return self.report(errors::allow_arguments(prefix)) };
+        if code.name.is_some() || !matches!(why.value.kind, Tree::Text(_) | Tree::Invalid) {
+            return self.report(errors::allow_arguments(prefix));
+        }
+        let written = match &code.value.kind {
+            Tree::Name(name) | Tree::Text(name) => name.clone(),
+            Tree::Invalid => return,
+            _ => return self.report(errors::allow_arguments(prefix)),
+        };
+        let found =
+            Code::ALL.iter().copied().find(|code| *written == *code.as_str() || *written == code.name());
+        match found {
+            Some(code) if code.severity() == Severity::Warning => {
+                self.program.allows.push(Allow { code, on: statement.span, span: prefix.span });
+            }
+            Some(code) => self.report(errors::allow_error(code, prefix)),
+            None => {
+                let name = Name { text: written, span: code.value.span };
+                self.report(errors::allow_what(&name));
+            }
+        }
+    }
+
+    /// The type of a name inside an imported file.
+    pub(super) fn exported(&self, file: FileId, name: &str) -> Option<&super::program::InsideName> {
+        let part = self.program.part(self.program.files[file.index()].part);
+        self.program.insides[part.inside.index()].names.get(name)
+    }
+}
+
+/// The value of a number as written, sign included.
+fn literal(value: &Expr) -> Option<f64> {
+    match &value.kind {
+        ExprKind::Number(x) => Some(*x),
+        ExprKind::Unary { operator: ast::UnaryOp::Negate, operand } => literal(operand).map(|x| -x),
+        _ => None,
+    }
+}

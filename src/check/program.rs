@@ -1,0 +1,453 @@
+//! The typed program: what checking gives, and evaluating takes.
+
+use super::declared::Declared;
+use super::functions::Function;
+use super::types::Type;
+use crate::asset::table::Table;
+use crate::color::Rgb;
+use crate::diagnostic::Code;
+use crate::schema::KindId;
+use crate::span::{SourceId, Span};
+use crate::syntax::ast::{BinaryOp, UnaryOp};
+use smol_str::SmolStr;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+macro_rules! ids {
+    ($($(#[doc = $doc:literal])* $name:ident;)*) => {
+        $($(#[doc = $doc])* #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)] pub struct $name(pub u32);
+
+        impl $name {
+            /// As an index.
+            pub fn index(self) -> usize {
+                self.0 as usize
+            }
+        })*
+    };
+}
+
+ids! {
+    /// Index into [`Program::parts`].
+    PartId;
+    /// Index into [`Program::functions`].
+    FunctionId;
+    /// Index into [`Program::files`].
+    FileId;
+    /// Index into [`Program::insides`].
+    InsideId;
+    /// Index into [`Program::tables`].
+    TableId;
+}
+
+/// A checked file with everything it imports.
+#[derive(Debug, Default)]
+pub struct Program {
+    /// Files, each behind those it imports: the last is the one that is drawn.
+    pub files: Vec<File>,
+    /// Parts, files among them.
+    pub parts: Vec<Part>,
+    /// Functions the files declare.
+    pub functions: Vec<FunctionBody>,
+    /// Names by path: inside parts, groups and files.
+    pub insides: Vec<Inside>,
+    /// Tables that were read.
+    pub tables: Vec<Arc<Table>>,
+    /// Warnings that are to be silenced.
+    pub allows: Vec<Allow>,
+}
+
+/// A file of the program.
+#[derive(Debug)]
+pub struct File {
+    /// Its text.
+    pub source: SourceId,
+    /// Its content as a part.
+    pub part: PartId,
+}
+
+/// A part, or a file.
+#[derive(Debug)]
+pub struct Part {
+    /// What it is called; empty for a file.
+    pub name: SmolStr,
+    /// What can be set, in the order written.
+    pub params: Vec<Param>,
+    /// Its statements.
+    pub block: Block,
+    /// Fields of [`crate::schema::PLACED`] that its body gives: index and value.
+    pub fields: Vec<(usize, Expr)>,
+    /// How many slots a frame of it has.
+    pub slots: usize,
+    /// The names inside.
+    pub inside: InsideId,
+    /// How much one evaluation counts.
+    pub cost: u64,
+    /// The words above it.
+    pub doc: Option<SmolStr>,
+}
+
+/// A setting of a part or file.
+#[derive(Debug)]
+pub struct Param {
+    /// What it is called.
+    pub name: SmolStr,
+    /// Its type.
+    pub declared: Declared,
+    /// What it is where it is not set: by `--set`, where that sets it.
+    pub default: Expr,
+    /// The default as the file has it.
+    pub written: String,
+    /// Whether `--set` set it.
+    pub set: bool,
+    /// What its value must lie in, both ends included.
+    pub range: Option<[Expr; 2]>,
+    /// Its slot in the part's frame.
+    pub slot: usize,
+    /// The words above it.
+    pub doc: Option<SmolStr>,
+    /// The whole statement.
+    pub span: Span,
+}
+
+/// A function that a file declares.
+#[derive(Debug)]
+pub struct FunctionBody {
+    /// What it is called.
+    pub name: SmolStr,
+    /// What it takes; their slots count from 0.
+    pub parameters: Vec<(SmolStr, Declared)>,
+    /// Of what it gives.
+    pub result: Declared,
+    /// What it gives.
+    pub value: Expr,
+    /// How many slots a frame of it has.
+    pub slots: usize,
+    /// How much one call counts.
+    pub cost: u64,
+    /// The words above it.
+    pub doc: Option<SmolStr>,
+}
+
+/// The names inside a part, group or file.
+#[derive(Debug, Default)]
+pub struct Inside {
+    /// By name.
+    pub names: BTreeMap<SmolStr, InsideName>,
+}
+
+/// A name inside a part, group or file.
+#[derive(Clone, Debug)]
+pub struct InsideName {
+    /// Its slot in the frame it was declared in.
+    pub slot: usize,
+    /// What it is.
+    pub ty: Type,
+}
+
+/// `@allow(code, "why")` before a statement.
+#[derive(Clone, Debug)]
+pub struct Allow {
+    /// What is silenced.
+    pub code: Code,
+    /// On this statement.
+    pub on: Span,
+    /// The prefix itself.
+    pub span: Span,
+}
+
+/// The statements of one scope.
+#[derive(Debug, Default)]
+pub struct Block {
+    /// In the order written.
+    pub statements: Vec<Statement>,
+    /// The statements in an order in which each comes after those it uses; empty where that is the order written.
+    pub order: Vec<u32>,
+}
+
+/// One statement.
+#[derive(Debug)]
+pub struct Statement {
+    /// What it does.
+    pub kind: StatementKind,
+    /// From its first word to its end.
+    pub span: Span,
+    /// Whether its things are left out: `@off`.
+    pub off: bool,
+    /// Whether all others are: `@solo`.
+    pub solo: bool,
+}
+
+/// The forms of a statement.
+#[derive(Debug)]
+pub enum StatementKind {
+    /// Nothing is left to do.
+    Nothing,
+    /// Has an error that was reported.
+    Invalid,
+    /// Gives a slot its value.
+    Define {
+        /// The slot.
+        slot: usize,
+        /// The value.
+        value: Expr,
+    },
+    /// Gives the slot of a param its value.
+    Param(usize),
+    /// Puts a thing into the picture.
+    Draw {
+        /// The slot of its name, where anything refers to it.
+        slot: Option<usize>,
+        /// How it is made.
+        make: Box<Make>,
+    },
+    /// Goes through a list.
+    For {
+        /// The slot of the variable.
+        slot: usize,
+        /// What is gone through.
+        list: Expr,
+        /// What is done with each.
+        body: Block,
+        /// How much one turn counts.
+        cost: u64,
+    },
+    /// Does the one or the other.
+    If {
+        /// Which.
+        condition: Expr,
+        /// Where it holds.
+        then: Block,
+        /// Where it does not.
+        otherwise: Block,
+    },
+    /// Must hold.
+    Assert {
+        /// What.
+        condition: Expr,
+        /// What is said where it does not.
+        message: Option<Expr>,
+    },
+}
+
+/// A typed expression. Numbers are in base units.
+#[derive(Debug)]
+pub struct Expr {
+    /// What it is.
+    pub kind: ExprKind,
+    /// Where it was written.
+    pub span: Span,
+}
+
+/// The forms of a typed expression.
+#[derive(Debug)]
+pub enum ExprKind {
+    /// Was reported.
+    Invalid,
+    /// A number or quantity.
+    Number(f64),
+    /// `true` or `false`.
+    Bool(bool),
+    /// A text.
+    Text(SmolStr),
+    /// A colour.
+    Color(Rgb),
+    /// A word that the field understands.
+    Word(&'static str),
+    /// Two or three numbers.
+    Tuple(Vec<Expr>),
+    /// Items of one type.
+    List(Vec<Expr>),
+    /// The value of a name of this file.
+    Name {
+        /// In the frame so many levels out: 0 is the innermost part, function or file.
+        up: usize,
+        /// Where in it.
+        slot: usize,
+    },
+    /// The value of a name of an imported file.
+    FileName {
+        /// The file, with its params as they are by default.
+        file: FileId,
+        /// Where in its frame.
+        slot: usize,
+    },
+    /// A component of a triple.
+    Component {
+        /// The triple.
+        value: Box<Expr>,
+        /// 0, 1 or 2.
+        axis: usize,
+    },
+    /// An item of a list.
+    Index {
+        /// The list.
+        value: Box<Expr>,
+        /// Which, from 0.
+        index: Box<Expr>,
+    },
+    /// A field of a thing.
+    Field {
+        /// The thing.
+        value: Box<Expr>,
+        /// Which.
+        field: FieldPlace,
+    },
+    /// A name inside a thing.
+    Inside {
+        /// The thing.
+        value: Box<Expr>,
+        /// The name's slot.
+        slot: usize,
+    },
+    /// A point of bounds.
+    Corner {
+        /// The bounds.
+        value: Box<Expr>,
+        /// Which.
+        corner: Corner,
+    },
+    /// A column of a row.
+    Column {
+        /// The row.
+        value: Box<Expr>,
+        /// Which, from 0.
+        column: usize,
+    },
+    /// All rows of a table.
+    Table(TableId),
+    /// `if … then … else …`: condition, and both values.
+    If(Box<[Expr; 3]>),
+    /// An operator before its operand.
+    Unary {
+        /// The operator.
+        operator: UnaryOp,
+        /// Its operand.
+        operand: Box<Expr>,
+    },
+    /// An operator between its operands.
+    Binary {
+        /// The operator.
+        operator: BinaryOp,
+        /// Left operand.
+        left: Box<Expr>,
+        /// Right operand.
+        right: Box<Expr>,
+        /// Whether the result is a whole number.
+        int: bool,
+    },
+    /// A built-in function.
+    Call {
+        /// Which.
+        function: Function,
+        /// Its arguments, as its signature orders them.
+        arguments: Vec<Expr>,
+    },
+    /// A function that a file declares.
+    CallDeclared {
+        /// Which.
+        function: FunctionId,
+        /// Where the names around it are.
+        around: Around,
+        /// Its arguments in order.
+        arguments: Vec<Expr>,
+    },
+    /// Makes a thing.
+    Make(Box<Make>),
+}
+
+/// A point of bounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Corner {
+    /// The least corner.
+    Min,
+    /// The greatest corner.
+    Max,
+    /// The middle.
+    Center,
+    /// From the least to the greatest.
+    Size,
+}
+
+/// Where the names around a part or function are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Around {
+    /// Nowhere: it is a file.
+    Nothing,
+    /// In the frame so many levels out.
+    Up(usize),
+    /// In an imported file with its params as they are by default.
+    File(FileId),
+}
+
+/// How a thing is made: what it begins as, and what is changed.
+#[derive(Debug)]
+pub struct Make {
+    /// What it begins as.
+    pub base: Base,
+    /// Fields given here, in the order of [`FieldPlace`].
+    pub fields: Vec<(FieldPlace, Expr)>,
+    /// Definitions the fields may use, and members of a group.
+    pub block: Option<Block>,
+    /// The names inside that can be referred to by path.
+    pub inside: Option<InsideId>,
+    /// What is the same for everything made here.
+    pub written: Arc<Written>,
+}
+
+/// What is the same for all things made at one place.
+#[derive(Debug, PartialEq)]
+pub struct Written {
+    /// The name it is given.
+    pub name: Option<SmolStr>,
+    /// From the kind to the closing brace.
+    pub span: Span,
+    /// Where the fields' values stand, in the order of [`Make::fields`].
+    pub fields: Box<[Span]>,
+}
+
+/// Which field of a thing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum FieldPlace {
+    /// Of a part: an index into [`Part::params`].
+    Param(usize),
+    /// Of a kind: an index of [`KindId::fields`].
+    Index(usize),
+    /// An index into [`crate::schema::PLACED`], of a part or of a kind that is not known yet.
+    Placed(usize),
+}
+
+/// What a thing begins as.
+#[derive(Debug)]
+pub enum Base {
+    /// A built-in kind, with its defaults.
+    Kind(KindId),
+    /// A prototype: an expression that evaluates to a thing.
+    Prototype(Expr),
+    /// A part, or a file as one.
+    Part {
+        /// Which.
+        part: PartId,
+        /// Where the names around it are.
+        around: Around,
+    },
+    /// Unknown, and reported.
+    Invalid,
+}
+
+impl Expr {
+    pub(super) fn invalid(span: Span) -> Expr {
+        Expr { kind: ExprKind::Invalid, span }
+    }
+}
+
+impl Program {
+    /// The part with this id.
+    pub fn part(&self, id: PartId) -> &Part {
+        &self.parts[id.index()]
+    }
+
+    /// The file that is drawn.
+    pub fn main(&self) -> Option<&Part> {
+        self.files.last().map(|file| self.part(file.part))
+    }
+}

@@ -1,0 +1,49 @@
+//! Settings from outside: `name=value`, each a source of its own.
+
+use super::errors;
+use crate::diagnostic::Diagnostic;
+use crate::source::{Source, Sources};
+use crate::span::Span;
+use crate::syntax;
+use crate::syntax::ast::{Expr, Name};
+
+/// A value for a param of the file that is drawn.
+#[derive(Debug)]
+pub struct Setting {
+    /// The param.
+    pub name: Name,
+    /// Its value.
+    pub value: Expr,
+}
+
+/// Reads settings, each of the form `name=value`, into sources named `--set`.
+pub fn settings(sources: &mut Sources, given: &[String]) -> (Vec<Setting>, Vec<Diagnostic>) {
+    let mut settings: Vec<Setting> = vec![];
+    let mut diagnostics = vec![];
+    for text in given {
+        let source = sources.add(Source::new("--set", text.as_str()));
+        let whole = Span::new(source, 0, text.len());
+        let Some((name, value)) = text.split_once('=') else {
+            diagnostics.push(errors::malformed_setting(whole));
+            continue;
+        };
+        let start = name.len() - name.trim_start().len();
+        let name =
+            Name { text: name.trim().into(), span: Span::new(source, start, start + name.trim().len()) };
+        let word = name.text.chars().all(|c| c.is_alphanumeric() || c == '_') && !name.text.is_empty();
+        if !word || value.trim().is_empty() {
+            diagnostics.push(errors::malformed_setting(whole));
+            continue;
+        }
+        if let Some(first) = settings.iter().find(|first| first.name.text == name.text) {
+            diagnostics.push(errors::set_twice(&name, first.name.span));
+            continue;
+        }
+        // Blanks in place of the name keep the places of the value.
+        let blank = " ".repeat(text.len() - value.len());
+        let (value, slips) = syntax::parse_expression(source, &(blank + value));
+        diagnostics.extend(slips);
+        settings.push(Setting { name, value });
+    }
+    (settings, diagnostics)
+}

@@ -1,0 +1,61 @@
+//! `rtc fmt`: lays scenes out in the one way they are written.
+
+use super::args::Fmt;
+use super::input::{self, is_standard};
+use super::interrupt::Interrupt;
+use super::terminal::Terminal;
+use super::{Exit, Problem, plain, target};
+use rt_lang::diagnostic::any_errors;
+use rt_lang::syntax;
+use similar::TextDiff;
+use std::io::{Write, stdout};
+use std::path::Path;
+
+/// Formats every file, also those behind one that fails. The worst of them gives the exit code.
+pub fn run(arguments: &Fmt, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
+    let mut worst = Exit::Done;
+    for file in &arguments.files {
+        let exit = one(file, arguments, terminal, interrupt).unwrap_or_else(|problem| {
+            terminal.problem(&problem);
+            Exit::Usage
+        });
+        worst = worst.max(exit);
+    }
+    Ok(worst)
+}
+
+fn one(file: &Path, arguments: &Fmt, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
+    let input = input::read(file)?;
+    if let Some(refused) = input.refused {
+        terminal.diagnostics(&[refused], &input.sources);
+        return Ok(Exit::Diagnostics);
+    }
+    let source = input.sources.get(input.id);
+    let (formatted, slips) = syntax::format(input.id, &source.text);
+    terminal.diagnostics(&slips, &input.sources);
+    let changes = formatted != source.text;
+    if arguments.diff && changes {
+        show(&difference(&source.name, &source.text, &formatted))?;
+    } else if arguments.check && changes {
+        show(&format!("{}\n", source.name))?;
+    } else if !arguments.check && !arguments.diff {
+        match is_standard(file) {
+            true => show(&formatted)?,
+            false if changes => target::replace(file, formatted.as_bytes(), interrupt)?,
+            false => {}
+        }
+    }
+    let fails = any_errors(&slips) || (arguments.check && changes);
+    Ok(if fails { Exit::Diagnostics } else { Exit::Done })
+}
+
+/// What would change, as `diff -u` shows it.
+fn difference(name: &str, before: &str, after: &str) -> String {
+    TextDiff::from_lines(before, after).unified_diff().header(name, name).to_string()
+}
+
+fn show(text: &str) -> Result<(), Problem> {
+    let mut stdout = stdout().lock();
+    let written = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
+    written.map_err(|error| Problem::new(format!("cannot write standard output: {}", plain(&error))))
+}

@@ -1,0 +1,211 @@
+//! Things as they are put into the picture: flat, each with the group it stands in and where it came from.
+
+use super::value::{Given, Made, Placed, ThingId, Value};
+use crate::math::DAffine3;
+use crate::schema::{Category, placed};
+use crate::span::Span;
+use std::ops::Range;
+use std::rc::Rc;
+
+/// No link, no group: what is outermost.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// What a scene, or a group that is not drawn, holds. The group 0 is the scene or group itself.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct Built {
+    /// In the order written.
+    pub(super) things: Vec<Stored>,
+    /// Groups, each behind the one it stands in.
+    pub(super) groups: Vec<GroupPlace>,
+    /// Which things something that was named has become.
+    pub(super) places: Vec<Range<u32>>,
+    /// Places that are left out.
+    pub(super) off: Vec<ThingId>,
+    /// Places beside which all others are left out.
+    pub(super) solo: Vec<ThingId>,
+    /// Chains of uses: a place, and the link of the use around it.
+    pub(super) links: Vec<(Span, u32)>,
+    /// Whether a field of a thing means a place of this scene or group.
+    pub(super) aims: bool,
+}
+
+/// One thing.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Stored {
+    pub(super) made: Rc<Made>,
+    /// The group it stands in.
+    pub(super) group: u32,
+    /// Where it came from.
+    pub(super) link: u32,
+}
+
+/// Where a group stands.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct GroupPlace {
+    /// In which group.
+    pub(super) parent: u32,
+    /// Where in that.
+    pub(super) placement: DAffine3,
+    /// What members are made of that name no material.
+    pub(super) material: Option<Given>,
+}
+
+/// By how much the indices of what was copied from one [`Built`] to another have grown.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Shift {
+    pub(super) places: u32,
+    pub(super) groups: u32,
+}
+
+impl Built {
+    /// Nothing, in the group 0.
+    pub(super) fn new() -> Built {
+        let mut built = Built::default();
+        built.begin_group(NONE);
+        built
+    }
+
+    /// Adds a group that stands where its parent does, until its fields are known.
+    pub(super) fn begin_group(&mut self, parent: u32) -> u32 {
+        self.groups.push(GroupPlace { parent, placement: DAffine3::IDENTITY, material: None });
+        self.groups.len() as u32 - 1
+    }
+
+    /// Says where a group stands, and what it is made of.
+    pub(super) fn place_group(&mut self, group: u32, made: &Made) {
+        let place = &mut self.groups[group as usize];
+        place.placement = placement(made);
+        place.material = material(made);
+    }
+
+    /// A link of the chain of uses; the same again where it was added just now, as in a loop.
+    pub(super) fn link(&mut self, span: Span, outer: u32) -> u32 {
+        /// A loop's body seldom has more statements.
+        const RECENT: usize = 8;
+        let from = self.links.len().saturating_sub(RECENT);
+        let known = self.links[from..].iter().rposition(|link| *link == (span, outer));
+        if let Some(known) = known {
+            return (from + known) as u32;
+        }
+        self.links.push((span, outer));
+        self.links.len() as u32 - 1
+    }
+
+    /// Names the things from `first` on.
+    pub(super) fn place(&mut self, first: u32) -> ThingId {
+        self.places.push(first..self.things.len() as u32);
+        ThingId(self.places.len() as u32 - 1)
+    }
+
+    /// Copies what another holds into a group of this, as used by way of a link.
+    pub(super) fn append(&mut self, other: &Built, parent: u32, link: u32, levels: [usize; 2]) -> Shift {
+        let shift = Shift { places: self.places.len() as u32, groups: self.groups.len() as u32 };
+        let (first, first_link) = (self.things.len() as u32, self.links.len() as u32);
+        self.groups.extend(other.groups.iter().map(|group| {
+            let parent = if group.parent == NONE { parent } else { group.parent + shift.groups };
+            GroupPlace { parent, ..group.clone() }
+        }));
+        self.places.extend(other.places.iter().map(|place| place.start + first..place.end + first));
+        self.off.extend(other.off.iter().map(|id| ThingId(id.0 + shift.places)));
+        self.solo.extend(other.solo.iter().map(|id| ThingId(id.0 + shift.places)));
+        self.links.extend(
+            other
+                .links
+                .iter()
+                .map(|&(span, outer)| (span, if outer == NONE { link } else { outer + first_link })),
+        );
+        self.things.extend(other.things.iter().map(|thing| Stored {
+            made: if other.aims { aim_again(&thing.made, shift, levels) } else { thing.made.clone() },
+            group: thing.group + shift.groups,
+            link: if thing.link == NONE { link } else { thing.link + first_link },
+        }));
+        self.aims |= other.aims;
+        shift
+    }
+
+    /// Brings runs of things, each with the index of its statement, into the order written. `places` is the first
+    /// that may lie among them.
+    pub(super) fn reorder(&mut self, mut runs: Vec<(u32, Range<u32>)>, places: usize) {
+        runs.retain(|(_, run)| !run.is_empty());
+        let Some(first) = runs.first().map(|(_, run)| run.start) else { return };
+        runs.sort_by_key(|(statement, _)| *statement);
+        let segment = self.things.split_off(first as usize);
+        // Where each run began, and where it begins now.
+        let mut moves: Vec<(u32, u32)> = vec![];
+        for (_, run) in &runs {
+            moves.push((run.start, self.things.len() as u32));
+            self.things.extend_from_slice(&segment[(run.start - first) as usize..(run.end - first) as usize]);
+        }
+        moves.sort_unstable();
+        for place in self.places[places..].iter_mut().filter(|place| place.start < place.end) {
+            let run = moves.partition_point(|(start, _)| *start <= place.start);
+            if let Some((start, moved)) = run.checked_sub(1).map(|run| moves[run]) {
+                *place = place.start - start + moved..place.end - start + moved;
+            }
+        }
+    }
+
+    /// From the space of a group to that of one around it.
+    pub(super) fn carries(&self, mut group: u32, from: u32) -> DAffine3 {
+        let mut carried = DAffine3::IDENTITY;
+        while group != from && group != NONE {
+            let place = &self.groups[group as usize];
+            carried = place.placement * carried;
+            group = place.parent;
+        }
+        carried
+    }
+}
+
+/// The placement that a thing's own fields give: `place`, then `at`.
+pub(super) fn placement(made: &Made) -> DAffine3 {
+    if !matches!(made.kind.get().category, Category::Shape | Category::Group) {
+        return DAffine3::IDENTITY;
+    }
+    let place = made.given(placed::PLACE).map_or(DAffine3::IDENTITY, |(place, _)| place);
+    match made.given(placed::AT) {
+        Some((at, _)) => DAffine3::from_translation(at) * place,
+        None => place,
+    }
+}
+
+/// The material that a thing's own field gives.
+pub(super) fn material(made: &Made) -> Option<Given> {
+    if !matches!(made.kind.get().category, Category::Shape | Category::Group) {
+        return None;
+    }
+    let (value, span) = made.find(placed::MATERIAL.index(made.kind))?;
+    Some(Given { value: value.clone(), span })
+}
+
+/// A thing whose fields mean what was copied with it.
+fn aim_again(made: &Rc<Made>, shift: Shift, [from, to]: [usize; 2]) -> Rc<Made> {
+    let aims = |value: &Value| matches!(value, Value::Thing(placed) if placed.level == from);
+    if !made.values.iter().any(aims) {
+        return made.clone();
+    }
+    let mut again = (**made).clone();
+    for value in &mut again.values {
+        if let Value::Thing(placed) = value
+            && placed.level == from
+        {
+            *value = Value::Thing(Rc::new(moved(placed, shift, to)));
+        }
+    }
+    Rc::new(again)
+}
+
+/// A thing as it is after it was copied.
+pub(super) fn moved(placed: &Placed, shift: Shift, level: usize) -> Placed {
+    Placed {
+        id: ThingId(placed.id.0 + shift.places),
+        level,
+        stands: placed.stands + shift.groups,
+        from: placed.from + shift.groups,
+        shift: Shift {
+            places: placed.shift.places + shift.places,
+            groups: placed.shift.groups + shift.groups,
+        },
+        ..placed.clone()
+    }
+}

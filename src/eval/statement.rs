@@ -1,0 +1,144 @@
+//! Statements.
+
+use super::{Evaluator, Given, Value, errors};
+use crate::check::{Block, Expr, Statement, StatementKind};
+use crate::span::Span;
+
+impl Evaluator<'_> {
+    /// Evaluates the statements of a scope. With `definitions` only what is named: nothing else of an imported file
+    /// is asked for.
+    pub(super) fn block(&mut self, block: &Block, definitions: bool) {
+        if block.order.is_empty() {
+            for statement in &block.statements {
+                if self.halted {
+                    return;
+                }
+                self.statement(statement, definitions);
+            }
+            return;
+        }
+        let places = self.out().places.len();
+        let mut runs = vec![];
+        for &index in &block.order {
+            if self.halted {
+                return;
+            }
+            let first = self.out().things.len() as u32;
+            self.statement(&block.statements[index as usize], definitions);
+            runs.push((index, first..self.out().things.len() as u32));
+        }
+        let lies_on_cycle = block.order.len() < block.statements.len();
+        self.incomplete |= lies_on_cycle;
+        self.out().reorder(runs, places);
+    }
+
+    fn statement(&mut self, statement: &Statement, definitions: bool) {
+        let span = statement.span;
+        let named = matches!(
+            statement.kind,
+            StatementKind::Define { .. }
+                | StatementKind::Param(_)
+                | StatementKind::Draw { slot: Some(_), .. }
+        );
+        if definitions && !named {
+            return;
+        }
+        let first = self.out().things.len() as u32;
+        match &statement.kind {
+            StatementKind::Nothing => {}
+            StatementKind::Invalid => self.incomplete = true,
+            StatementKind::Define { slot, value } => {
+                let value = self.expr(value);
+                self.incomplete |= value == Value::Invalid;
+                self.frame.set(*slot, value);
+            }
+            StatementKind::Param(index) => self.param(*index),
+            StatementKind::Draw { slot, make } => {
+                let placed = self.draw(make, span, slot.is_some());
+                if let (Some(slot), Some(value)) = (slot, placed) {
+                    self.frame.set(*slot, value);
+                }
+            }
+            StatementKind::For { slot, list, body, cost } => self.repeat(*slot, list, body, *cost, span),
+            StatementKind::If { condition, then, otherwise } => match self.expr(condition) {
+                Value::Bool(true) => self.block(then, false),
+                Value::Bool(false) => self.block(otherwise, false),
+                _ => self.incomplete = true,
+            },
+            StatementKind::Assert { condition, message } if !statement.off => {
+                self.assert(condition, message.as_ref())
+            }
+            StatementKind::Assert { .. } => {}
+        }
+        if statement.off || statement.solo {
+            let id = self.out().place(first);
+            let list = if statement.off { &mut self.out().off } else { &mut self.out().solo };
+            list.push(id);
+        }
+    }
+
+    fn repeat(&mut self, slot: usize, list: &Expr, body: &Block, cost: u64, span: Span) {
+        let Value::List(list) = self.expr(list) else {
+            self.incomplete = true;
+            return;
+        };
+        let outer = self.link;
+        self.link = self.out().link(span, outer);
+        self.uses.push(span);
+        let mut index = 0;
+        while let Some(item) = list.get(index) {
+            if !self.step(cost, span) {
+                break;
+            }
+            self.frame.set(slot, item);
+            self.block(body, false);
+            index += 1;
+        }
+        self.uses.pop();
+        self.link = outer;
+    }
+
+    fn assert(&mut self, condition: &Expr, message: Option<&Expr>) {
+        if self.expr(condition) != Value::Bool(false) {
+            return;
+        }
+        let message = match message.map(|message| self.expr(message)) {
+            Some(Value::Text(text)) => Some(text),
+            _ => None,
+        };
+        self.report(errors::assertion(message.as_deref(), condition.span));
+    }
+
+    /// Gives a param its value: as set, or its default; in its range.
+    fn param(&mut self, index: usize) {
+        let Some(param) = self.part.and_then(|part| part.params.get(index)) else { return };
+        let given = self.given.get(index).cloned().flatten();
+        let Given { value, span } = match given {
+            Some(given) => given,
+            None => Given { value: self.expr(&param.default), span: param.default.span },
+        };
+        let value = zero_of(&param.declared, value);
+        let range = param.range.as_ref().map(|[low, high]| [self.expr(low), self.expr(high)]);
+        let value = match (&value, range) {
+            (&Value::Number(x), Some([Value::Number(low), Value::Number(high)]))
+                if !(low..=high).contains(&x) =>
+            {
+                self.report(errors::param_out_of_range(param, [low, high], x, span))
+            }
+            _ => value,
+        };
+        self.incomplete |= value == Value::Invalid;
+        self.frame.set(param.slot, value);
+    }
+}
+
+/// A lone 0 where three components are declared.
+pub(super) fn zero_of(declared: &crate::check::Declared, value: Value) -> Value {
+    use crate::schema::FieldType;
+    match (declared, &value) {
+        (crate::check::Declared::Field(FieldType::Tuple(..)), Value::Number(_)) => {
+            Value::Tuple(crate::math::DVec3::ZERO)
+        }
+        _ => value,
+    }
+}

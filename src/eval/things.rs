@@ -1,0 +1,136 @@
+//! What evaluating gives: everything that stands in the picture.
+
+use super::built::{Built, NONE, material, placement};
+use super::defaults::Defaults;
+use super::{Given, Made, Origins, Read, ThingId, Value};
+use crate::math::DAffine3;
+use crate::scene::OriginId;
+use crate::schema::{Key, KindId};
+use smol_str::SmolStr;
+use std::ops::Range;
+use std::rc::Rc;
+
+/// Everything that stands in the picture, groups taken apart, in the order written.
+#[derive(Debug)]
+pub struct Things {
+    built: Built,
+    /// By group: from its space to the world's, and what its members are made of by default.
+    groups: Vec<(DAffine3, Option<Given>)>,
+    /// Which are left out: `@off`, or not `@solo` where something is. None where nothing is.
+    hidden: Option<Vec<bool>>,
+    /// Where each came from.
+    pub origins: Origins,
+    /// The values of fields that are not given.
+    defaults: Defaults,
+    /// Whether something that was written is not among them, since it has an error.
+    pub incomplete: bool,
+}
+
+/// One thing of the picture: a shape, a light or a block.
+#[derive(Clone, Debug)]
+pub struct Thing {
+    /// Its kind and fields.
+    pub made: Rc<Made>,
+    /// Where it stands: its own placement and that of the groups around it.
+    pub world_from_object: DAffine3,
+    /// Its material, or else that of the innermost group that has one.
+    pub material: Option<Given>,
+    /// Where it came from.
+    pub origin: OriginId,
+    /// Whether it is left out. It is checked, and others may aim at it, all the same.
+    pub hidden: bool,
+}
+
+impl Things {
+    /// Takes in what was built.
+    pub(super) fn new(mut built: Built, incomplete: bool) -> Things {
+        let mut groups: Vec<(DAffine3, Option<Given>)> = Vec::with_capacity(built.groups.len());
+        for group in &built.groups {
+            let (world, inherited) = match group.parent {
+                NONE => (DAffine3::IDENTITY, None),
+                parent => groups[parent as usize].clone(),
+            };
+            groups.push((world * group.placement, group.material.clone().or(inherited)));
+        }
+        let hidden = hidden(&built);
+        let origins = Origins::new(std::mem::take(&mut built.links));
+        Things { built, groups, hidden, origins, defaults: Defaults::default(), incomplete }
+    }
+
+    /// How many there are, those that are left out among them.
+    pub fn len(&self) -> usize {
+        self.built.things.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.built.things.is_empty()
+    }
+
+    /// Each in turn.
+    pub fn iter(&self) -> impl Iterator<Item = Thing> {
+        (0..self.len()).map(|index| self.get(index))
+    }
+
+    /// The thing at an index.
+    pub fn get(&self, index: usize) -> Thing {
+        let stored = &self.built.things[index];
+        let (world, inherited) = &self.groups[stored.group as usize];
+        Thing {
+            world_from_object: *world * placement(&stored.made),
+            material: material(&stored.made).or_else(|| inherited.clone()),
+            made: stored.made.clone(),
+            origin: OriginId(stored.link),
+            hidden: self.hidden.as_ref().is_some_and(|hidden| hidden[index]),
+        }
+    }
+
+    /// The kinds of all things that are not left out.
+    pub fn kinds(&self) -> impl Iterator<Item = KindId> {
+        let shown = |index: &usize| !self.hidden.as_ref().is_some_and(|hidden| hidden[*index]);
+        (0..self.len()).filter(shown).map(|index| self.built.things[index].made.kind)
+    }
+
+    /// Which things one that was named has become.
+    pub fn place(&self, id: ThingId) -> Option<Range<usize>> {
+        self.built.places.get(id.0 as usize).map(|range| range.start as usize..range.end as usize)
+    }
+
+    /// A field of a thing: as given, or else its default.
+    pub fn read<T: Read>(&self, made: &Made, key: Key<T>) -> T::Out {
+        match made.given(key) {
+            Some((value, _)) => value,
+            None => self.defaults.read(made.kind, key),
+        }
+    }
+
+    /// The default of a field by its index.
+    pub(super) fn default(&self, kind: KindId, index: usize) -> Value {
+        self.defaults.value(kind, index)
+    }
+}
+
+impl Thing {
+    /// The name it was given.
+    pub fn name(&self) -> Option<&SmolStr> {
+        self.made.name()
+    }
+}
+
+/// Which things are left out. Where something is alone, cameras and other blocks stay.
+fn hidden(built: &Built) -> Option<Vec<bool>> {
+    if built.off.is_empty() && built.solo.is_empty() {
+        return None;
+    }
+    use crate::schema::Category;
+    let block = |index: usize| built.things[index].made.kind.get().category == Category::Block;
+    let mut hidden: Vec<bool> =
+        (0..built.things.len()).map(|index| !built.solo.is_empty() && !block(index)).collect();
+    let range = |id: &ThingId| {
+        let range = &built.places[id.0 as usize];
+        range.start as usize..range.end as usize
+    };
+    built.solo.iter().for_each(|id| hidden[range(id)].fill(false));
+    built.off.iter().for_each(|id| hidden[range(id)].fill(true));
+    Some(hidden)
+}

@@ -1,0 +1,171 @@
+//! The files a scene is made of: the one that was named and all it imports, each read and parsed once.
+
+use crate::diagnostic::{Code, Diagnostic};
+use crate::files::{FileError, FilePath, Files};
+use crate::source::{Source, Sources};
+use crate::span::{SourceId, Span};
+use crate::syntax::ast::{self, Entry, Name, StatementKind};
+use crate::syntax::{self, MAX_SOURCE};
+use std::collections::BTreeMap;
+
+/// The most levels of files that import files, and of parts within parts.
+pub const MAX_LEVELS: usize = 64;
+
+/// The most bytes that all imported files have together.
+const MAX_IMPORTED: usize = 4 * MAX_SOURCE;
+
+/// The files of a scene, each behind those it imports: the last is the one that was named.
+#[derive(Debug, Default)]
+pub struct Imported {
+    /// The files.
+    pub files: Vec<ImportedFile>,
+    /// Slips in their texts, and what is wrong with their imports.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// One file.
+#[derive(Debug)]
+pub struct ImportedFile {
+    /// Its text.
+    pub source: SourceId,
+    /// The tree of it.
+    pub tree: ast::File,
+    /// What its import statements mean: the statement, and an index into [`Imported::files`]. What could not be
+    /// read is not there.
+    pub imports: BTreeMap<Span, usize>,
+}
+
+/// Parses a source, and reads and parses what it imports.
+pub fn import(files: &dyn Files, sources: &mut Sources, main: SourceId) -> Imported {
+    let path = sources.get(main).path.clone();
+    let mut importer =
+        Importer { files, sources, known: BTreeMap::new(), open: vec![], bytes: 0, out: Imported::default() };
+    importer.file(main, path);
+    importer.out
+}
+
+struct Importer<'a> {
+    files: &'a dyn Files,
+    sources: &'a mut Sources,
+    /// Files that were looked at; none where one cannot be used.
+    known: BTreeMap<FilePath, Option<usize>>,
+    /// The files that are being read, outermost first.
+    open: Vec<FilePath>,
+    bytes: usize,
+    out: Imported,
+}
+
+impl Importer<'_> {
+    fn file(&mut self, source: SourceId, path: FilePath) -> usize {
+        let (tree, found) = syntax::parse(source, &self.sources.get(source).text);
+        self.out.diagnostics.extend(found);
+        self.open.push(path.clone());
+        let mut imports = BTreeMap::new();
+        for entry in &tree.body.entries {
+            if let Entry::Statement(statement) = entry
+                && let StatementKind::Import { path: written, .. } = &statement.kind
+                && let Some(file) = self.find(&path, written)
+            {
+                imports.insert(statement.span, file);
+            }
+        }
+        self.open.pop();
+        self.out.files.push(ImportedFile { source, tree, imports });
+        self.out.files.len() - 1
+    }
+
+    /// The file that an import statement names.
+    fn find(&mut self, from: &FilePath, written: &Name) -> Option<usize> {
+        let path = match from.join(&written.text) {
+            Ok(path) => path,
+            Err(error) => return self.report(errors::file(written, &error)),
+        };
+        if let Some(first) = self.open.iter().position(|open| *open == path) {
+            return self.report(errors::cycle(written, &self.open[first..]));
+        }
+        if let Some(known) = self.known.get(&path) {
+            return *known;
+        }
+        if self.open.len() >= MAX_LEVELS {
+            return self.report(errors::levels(written));
+        }
+        let file = self.read(&path, written);
+        self.known.insert(path, file);
+        file
+    }
+
+    fn read(&mut self, path: &FilePath, written: &Name) -> Option<usize> {
+        let bytes = match self.files.read(path, MAX_SOURCE) {
+            Ok(bytes) => bytes,
+            Err(error) => return self.report(errors::file(written, &error)),
+        };
+        self.bytes += bytes.len();
+        if bytes.len() > MAX_SOURCE || self.bytes > MAX_IMPORTED {
+            return self.report(errors::file(written, &FileError::TooLarge(MAX_SOURCE)));
+        }
+        let Ok(text) = std::str::from_utf8(&bytes) else { return self.report(errors::not_text(written)) };
+        let source = self.sources.add(Source::new(self.files.name(path), text).at(path.clone()));
+        Some(self.file(source, path.clone()))
+    }
+
+    fn report(&mut self, diagnostic: Diagnostic) -> Option<usize> {
+        self.out.diagnostics.push(diagnostic);
+        None
+    }
+}
+
+/// Why a file cannot be used, at the text that names it.
+pub fn unusable(written: &Name, error: &FileError) -> Diagnostic {
+    errors::file(written, error)
+}
+
+mod errors {
+    use super::*;
+
+    pub(super) fn file(written: &Name, error: &FileError) -> Diagnostic {
+        let path = &written.text;
+        let (code, message, label) = match error {
+            FileError::Missing => (Code::E0501, format!("there is no file `{path}`"), "not found"),
+            FileError::Outside => {
+                (Code::E0501, format!("`{path}` is not below the scene's root folder"), "outside")
+            }
+            FileError::TooLarge(most) => {
+                (Code::E0406, format!("`{path}` is larger than {} MiB", most >> 20), "too large")
+            }
+            FileError::Unreadable(reason) => {
+                (Code::E0501, format!("`{path}` cannot be read: {reason}"), "not readable")
+            }
+        };
+        let diagnostic = Diagnostic::new(code, message, written.span).at(label);
+        match error {
+            FileError::Missing => diagnostic.help("a path counts from the folder of the file that names it"),
+            FileError::Outside => {
+                diagnostic.help("`--root FOLDER` says below which folder files may be read")
+            }
+            FileError::TooLarge(_) | FileError::Unreadable(_) => diagnostic,
+        }
+    }
+
+    pub(super) fn not_text(written: &Name) -> Diagnostic {
+        Diagnostic::new(Code::E0501, format!("`{}` is not UTF-8 text", written.text), written.span)
+            .at("not a scene")
+            .help("save the file as UTF-8")
+    }
+
+    pub(super) fn cycle(written: &Name, open: &[FilePath]) -> Diagnostic {
+        let mut path: Vec<String> = open.iter().map(|path| format!("`{path}`")).collect();
+        path.extend(open.first().map(|path| format!("`{path}`")));
+        let message = match open.len() {
+            1 => "the file imports itself".to_string(),
+            _ => "these files import each other".to_string(),
+        };
+        Diagnostic::new(Code::E0502, message, written.span)
+            .at("closes the cycle")
+            .help(format!("break the cycle {}", path.join(" → ")))
+    }
+
+    pub(super) fn levels(written: &Name) -> Diagnostic {
+        Diagnostic::new(Code::E0406, format!("more than {MAX_LEVELS} levels of imports"), written.span)
+            .at("one level too many")
+    }
+}

@@ -1,0 +1,112 @@
+//! Tree to text: the one layout of a file.
+//!
+//! A body whose `{` ends its line has one entry a line, without commas; another body stays on its line if it fits
+//! in [`WIDTH`] columns. Longer values are broken before operators and inside parentheses. Numbers, texts and
+//! comments stay as they are written, and so does the group that a blank line sets off. `print` makes a document of
+//! the tree and of the comments between its tokens, `doc` lays it out.
+
+mod doc;
+mod print;
+
+use super::ast::{Body, File};
+use super::{cut, parse};
+use crate::diagnostic::Diagnostic;
+use crate::span::SourceId;
+use print::{Printer, Unit};
+use std::ops::Range;
+
+/// The widest line, in characters, where there is a choice.
+pub const WIDTH: usize = 100;
+
+/// Enough for the deepest tree.
+const STACK: usize = 64 << 20;
+
+/// Formats a text. Top-level items with a slip stay byte for byte as they are; the slips are given beside the
+/// text, with their places in the text as it was.
+pub fn format(source: SourceId, text: &str) -> (String, Vec<Diagnostic>) {
+    let work = || {
+        let (file, slips) = parse(source, text);
+        let formatted = print(&file, text, &slips);
+        // What stands beside a broken item might decide how it is read.
+        let kept = slips.is_empty() || {
+            let (again, left) = parse(source, &formatted);
+            is_alike(&slips, &left) && file.body.entries.len() == again.body.entries.len()
+        };
+        (if kept { formatted } else { text.to_string() }, slips)
+    };
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(STACK);
+        let handle = thread.spawn_scoped(scope, work).expect("the system has a thread to spare");
+        handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
+}
+
+fn is_alike(before: &[Diagnostic], after: &[Diagnostic]) -> bool {
+    let said = |slip: &Diagnostic| (slip.code, slip.message.clone());
+    before.iter().map(said).eq(after.iter().map(said))
+}
+
+fn print(file: &File, text: &str, slips: &[Diagnostic]) -> String {
+    let broken = broken(file, text, slips);
+    let mut printer = Printer::new(text, &file.comments);
+    let docs = printer.file(&units(&file.body, &broken));
+    doc::render(&docs, WIDTH)
+}
+
+/// What is printed as it stands: items with slips. A slip between two items concerns both.
+fn broken(file: &File, text: &str, slips: &[Diagnostic]) -> Vec<Range<usize>> {
+    if slips.is_empty() {
+        return vec![];
+    }
+    let items: Vec<Range<usize>> = cut::cut(file.source, text)
+        .items
+        .iter()
+        .map(|item| item.start..item.start + item.text.len())
+        .collect();
+    let mut ranges: Vec<Range<usize>> = vec![];
+    let mut places: Vec<Range<usize>> = slips
+        .iter()
+        .flat_map(|slip| slip.labels.iter().chain([&slip.primary]))
+        .map(|label| label.span.range())
+        .collect();
+    places.sort_by_key(|place| place.start);
+    for place in places {
+        let first = items.partition_point(|item| item.end < place.start);
+        let last = items.partition_point(|item| item.start <= place.end);
+        let inside = items.get(first).is_some_and(|item| item.start <= place.start && place.end <= item.end);
+        let (mut first, mut last) =
+            if inside { (first, first + 1) } else { (first.saturating_sub(1), last + 1) };
+        // At the beginning or the end of a line an operator would go on with the next one.
+        let same_line = |a: &Range<usize>, b: &Range<usize>| !text[a.end..b.start].contains('\n');
+        while first > 0 && items.get(first).is_some_and(|item| same_line(&items[first - 1], item)) {
+            first -= 1;
+        }
+        while last < items.len() && same_line(&items[last - 1], &items[last]) {
+            last += 1;
+        }
+        let start = items.get(first).map_or(place.start, |item| item.start.min(place.start));
+        let end = items[..last.min(items.len())].last().map_or(place.end, |item| item.end.max(place.end));
+        // A comment that is never closed is no item.
+        let comment = file.comments.partition_point(|comment| comment.span.range().start <= place.start);
+        let comment = file.comments[..comment].last().map_or(0, |comment| comment.span.range().end);
+        let end = end.max(if place.start < comment { comment } else { 0 });
+        let range = start..start.max(text[..end].trim_ascii_end().len());
+        match ranges.last_mut() {
+            Some(before) if range.start < before.end => before.end = before.end.max(range.end),
+            _ => ranges.push(range),
+        }
+    }
+    ranges
+}
+
+/// The entries of a file and its broken items, in order.
+fn units<'t>(body: &'t Body, broken: &[Range<usize>]) -> Vec<Unit<'t>> {
+    let mut units: Vec<Unit> = body.entries.iter().map(Unit::Entry).collect();
+    units.retain(|unit| {
+        let before = broken.partition_point(|range| range.end <= unit.start());
+        broken.get(before).is_none_or(|range| unit.start() < range.start)
+    });
+    units.extend(broken.iter().cloned().map(Unit::Verbatim));
+    units.sort_by_key(Unit::start);
+    units
+}

@@ -1,0 +1,205 @@
+//! The formatter: the cases of `cases/format`, and what must hold for any text.
+
+use crate::invariants;
+use crate::parse::{case_files, mutated, pieces};
+use proptest::prelude::*;
+use rt_lang::span::SourceId;
+use rt_lang::syntax::format;
+use std::path::{Path, PathBuf};
+
+const SOURCE: SourceId = SourceId(0);
+
+#[test]
+fn cases() {
+    insta::with_settings!({
+        snapshot_path => "cases/format",
+        prepend_module_to_snapshot => false,
+        omit_expression => true,
+    }, {
+        insta::glob!("cases/format/*.rt", |path| {
+            let text = std::fs::read_to_string(path).unwrap();
+            check(&text);
+            insta::assert_snapshot!("format", format(SOURCE, &text).0);
+        });
+    });
+}
+
+/// Every `.rt` file of the project.
+fn all_files(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            all_files(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "rt") {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn files_keep_their_meaning() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut paths = vec![];
+    all_files(&root.join("tests"), &mut paths);
+    all_files(&root.join("examples"), &mut paths);
+    assert!(paths.len() > 50);
+    for path in paths {
+        check(&String::from_utf8_lossy(&std::fs::read(&path).unwrap()));
+    }
+}
+
+fn check(text: &str) {
+    invariants::fmt(text);
+}
+
+#[test]
+fn a_broken_item_stays_as_it_is() {
+    let broken = "sphere {radius = 5cm,\n   at:0}";
+    let text = format!("plane  {{  }}\n\n\n\n{broken}  // c\nplane {{material:a}}\n");
+    let (formatted, slips) = format(SOURCE, &text);
+    assert_eq!(slips.len(), 1);
+    assert_eq!(formatted, format!("plane {{}}\n\n{broken} // c\nplane {{ material: a }}\n"));
+}
+
+// --- Texts without slips, laid out at random ---------------------------------------------------------------
+
+fn one_of(words: &'static [&'static str]) -> impl Strategy<Value = String> + Clone {
+    prop::sample::select(words).prop_map(str::to_string)
+}
+
+/// White space where a line must not end.
+fn space() -> impl Strategy<Value = String> + Clone {
+    one_of(&[" ", " ", " ", "  ", " /* s */ ", "\t"])
+}
+
+/// White space where it may.
+fn gap() -> impl Strategy<Value = String> + Clone {
+    one_of(&["", " ", " ", "\n", " // g\n", "\n // own\n\n", " /* g */ ", "\n/* a\n b */", "/// doc\n"])
+}
+
+/// What stands between two entries.
+fn between() -> impl Strategy<Value = String> + Clone {
+    one_of(&[
+        "\n",
+        "\n\n",
+        ", ",
+        ",\n",
+        " // b\n",
+        "\n// own\n",
+        "\n\n/// doc\n/// more\n",
+        " /* b */, ",
+        ", /* b */ ",
+        "\n\n\n// own\n\n",
+        " /// no doc\n",
+        "\n/* a */ // b\n",
+        "\n/* a */ /// b\n",
+    ])
+}
+
+fn value() -> impl Strategy<Value = String> {
+    let leaf = one_of(&[
+        "1",
+        "0.5",
+        "1e-3",
+        "8mm",
+        "25%",
+        "10W/m2",
+        "a",
+        "vase",
+        "#fff",
+        "\"text\"",
+        "true",
+        "a_long_name_of_a_thing",
+        "some.path.of.names",
+        "1_000.25in",
+    ]);
+    leaf.prop_recursive(5, 40, 6, |inner| {
+        let bare = inner.clone();
+        let list = |inner: BoxedStrategy<String>| {
+            prop::collection::vec((gap(), inner, gap()), 1..6).prop_map(|items| {
+                items.iter().map(|(a, b, c)| format!("{a}{b}{c}")).collect::<Vec<_>>().join(",")
+            })
+        };
+        let inner = inner.boxed();
+        let operator = one_of(&["+", "-", "*", "/", "|>", "and", "or", "==", "<", ">=", "to"]);
+        prop_oneof![
+            list(inner.clone()).prop_map(|items| format!("({items})")),
+            list(inner.clone()).prop_map(|items| format!("[{items}]")),
+            list(inner.clone()).prop_map(|items| format!("f({items})")),
+            (list(inner.clone()), bare.clone()).prop_map(|(items, x)| format!("g({items},\n name: {x})")),
+            (inner.clone(), gap(), operator, gap(), inner.clone())
+                .prop_map(|(a, x, op, y, b)| format!("({a}) {op}{y} ({b}{x})")),
+            (inner.clone(), gap(), inner.clone()).prop_map(|(a, x, b)| format!("({a}) +{x} ({b}) - a * b")),
+            (inner.clone(), inner.clone(), inner.clone(), gap())
+                .prop_map(|(a, b, c, x)| format!("(if ({a}) then {b} else{x} {c})")),
+            inner.clone().prop_map(|a| format!("-({a})[0].x")),
+            inner.clone().prop_map(|a| format!("not ({a})")),
+            (space(), inner.clone(), between(), inner.clone())
+                .prop_map(|(x, a, y, b)| format!("kind{x}{{ a: {a}{y}b: {b} }}")),
+        ]
+    })
+}
+
+fn body(inner: impl Strategy<Value = String>) -> impl Strategy<Value = String> {
+    (prop::collection::vec((inner, between()), 0..4), gap(), gap()).prop_map(|(entries, open, close)| {
+        let entries: String = entries.into_iter().map(|(entry, between)| entry + &between).collect();
+        format!("{{{open}{entries}{close}}}")
+    })
+}
+
+fn entry() -> impl Strategy<Value = String> {
+    let v = || value().boxed();
+    let leaf = prop_oneof![
+        (space(), v()).prop_map(|(s, a)| format!("a:{s}{a}")),
+        (space(), v()).prop_map(|(s, a)| format!("let{s}a ={s}{a}")),
+        (space(), v(), gap()).prop_map(|(s, a, g)| format!("param a{s}: [length] = {g} ({a}) in 1{s}to 2")),
+        (space(), v()).prop_map(|(s, a)| format!("fn f(a{s}: int, b: [angle]) ->{s}number ={s}{a}")),
+        space().prop_map(|s| format!("import{s}\"a.rt\" as{s}b")),
+        (space(), v()).prop_map(|(s, a)| format!("assert ({a}) {s},{s}\"message\"")),
+    ];
+    leaf.prop_recursive(3, 20, 4, |inner| {
+        let inner = inner.boxed();
+        prop_oneof![
+            (space(), body(inner.clone())).prop_map(|(s, b)| format!("group{s}{b}")),
+            (gap(), body(inner.clone()))
+                .prop_map(|(g, b)| format!("@off{g}\n@allow(W0601, \"why\") a.b c {b}")),
+            (space(), body(inner.clone())).prop_map(|(s, b)| format!("part a{s}{b}")),
+            (value(), body(inner.clone())).prop_map(|(a, b)| format!("for i in ({a}) {b}")),
+            (value(), body(inner.clone()), body(inner.clone()), space())
+                .prop_map(|(a, b, c, s)| format!("if ({a}) {b}{s}else if a {c} else {{}}")),
+        ]
+    })
+}
+
+fn scene() -> impl Strategy<Value = String> {
+    prop::collection::vec((entry(), between()), 0..5).prop_map(|entries| {
+        let text: String = entries.into_iter().map(|(entry, between)| entry + &between).collect();
+        text.trim_end_matches([' ', ',']).to_string()
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn generated_scenes_keep_their_meaning(text in scene()) {
+        check(&text);
+    }
+
+    #[test]
+    fn any_pieces_keep_their_meaning(text in pieces()) {
+        check(&text);
+    }
+
+    #[test]
+    fn mutated_cases_keep_their_meaning(text in mutated()) {
+        check(&text);
+    }
+}
+
+#[test]
+fn syntax_cases_keep_their_meaning() {
+    for (_, text) in case_files() {
+        check(&text);
+    }
+}

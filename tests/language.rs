@@ -1,0 +1,129 @@
+//! What the language means, seen in the scenes it makes.
+
+use proptest::prelude::*;
+use rt_lang::files::{FileError, FilePath, Files, NoFiles};
+use rt_lang::scene::Scene;
+use rt_lang::source::{Source, Sources};
+use rt_lang::{Options, compile};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
+
+/// Files in memory, with a list of what was read.
+#[derive(Default)]
+struct Memory {
+    files: BTreeMap<String, &'static str>,
+    read: Mutex<Vec<String>>,
+}
+
+impl Files for Memory {
+    fn read(&self, path: &FilePath, _: usize) -> Result<Arc<[u8]>, FileError> {
+        self.read.lock().unwrap().push(path.as_str().into());
+        self.files.get(path.as_str()).map(|text| text.as_bytes().into()).ok_or(FileError::Missing)
+    }
+}
+
+fn scene_of(files: &dyn Files, text: &str, set: &[&str]) -> Scene {
+    let mut sources = Sources::default();
+    let id = sources.add(Source::new("main.rt", text));
+    let set = set.iter().map(|set| set.to_string()).collect();
+    let compiled = compile(files, &mut sources, id, &Options { set, ..Options::default() });
+    compiled.scene.unwrap_or_else(|| panic!("{text}\n{:#?}", compiled.diagnostics))
+}
+
+fn scene(text: &str) -> Scene {
+    scene_of(&NoFiles, text, &[])
+}
+
+/// Surfaces with their materials, in no order.
+fn surfaces(scene: &Scene) -> Vec<String> {
+    let each = scene.primitives.iter();
+    let mut all: Vec<String> =
+        each.map(|primitive| format!("{:?} {:?}", primitive.shape, scene.material(primitive))).collect();
+    all.sort();
+    all
+}
+
+const STATEMENTS: &[&str] = &[
+    "camera { from: (0, 1, 9)m, look: left.knob }",
+    "let r = 2 * size",
+    "param size: length = 3cm",
+    "material red_paint = diffuse { color: red * 0.5 }",
+    "part post { param h: length = r, cylinder pole { radius: h / 9, height: h }, sphere knob { radius: h / 4, at: (0, bounds(pole).max.y, 0) } }",
+    "post left { h: 1m, material: red_paint }",
+    "fn place_of(i: int) -> point = (i * size, size, 0)",
+    "for i in 0 to 3 { ball { at: place_of(i) } }",
+    "let ball = sphere { radius: size }",
+    "group both { ball { at: bounds(left).max }, post { at: (1, 0, 0)m } }",
+    "sphere { radius: left.knob.radius, at: both.at }",
+];
+
+proptest! {
+    #[test]
+    fn order_never_matters(order in Just((0..STATEMENTS.len()).collect::<Vec<_>>()).prop_shuffle()) {
+        let text = |order: &[usize]| order.iter().map(|&i| STATEMENTS[i]).collect::<Vec<_>>().join("\n");
+        let written: Vec<usize> = (0..STATEMENTS.len()).collect();
+        let (given, shuffled) = (scene(&text(&written)), scene(&text(&order)));
+        prop_assert_eq!(surfaces(&given), surfaces(&shuffled));
+        prop_assert_eq!(given.camera, shuffled.camera);
+    }
+
+    #[test]
+    fn off_is_as_good_as_deleted(index in 0..4_usize) {
+        let lines = [
+            "sphere { radius: 1cm }",
+            "for i in range(5) { sphere { radius: 1cm, at: (i, 1, 0)m } }",
+            "group { sphere { radius: 2cm } }",
+            "if true { sphere { radius: 3cm } }",
+        ];
+        let marked = |mark: &str| {
+            let line = |(i, line): (usize, &&str)| if i == index { format!("{mark}{line}") } else { line.to_string() };
+            lines.iter().enumerate().map(line).collect::<Vec<_>>().join("\n")
+        };
+        prop_assert_eq!(surfaces(&scene(&marked("@off "))), surfaces(&scene(&marked("// "))));
+    }
+}
+
+#[test]
+fn things_come_in_the_order_written() {
+    let scene = scene("sphere { radius: r }\nlet r = 2 * q\nsphere { radius: q }\nlet q = 1m");
+    let radius = |i: usize| scene.primitives[i].shape.bounds().unwrap().max.x;
+    assert_eq!([radius(0), radius(1)], [2.0, 1.0]);
+}
+
+#[test]
+fn what_is_alone_leaves_others_out() {
+    let part = "part p { @solo sphere { radius: 1cm }, sphere { radius: 2cm } }\n";
+    let scene = scene(&format!("{part}p {{}}\np {{ at: (1, 0, 0)m }}\nplane {{}}\nlight {{ power: 1W }}"));
+    assert_eq!(scene.primitives.len(), 2);
+    assert_eq!(scene.lights.len(), 1, "a soft sky in place of the lamp");
+}
+
+#[test]
+fn settings_reach_params_and_may_use_names() {
+    let text = "param n: int = 2 in 1 to 9\nparam r: length = 1cm\nlet wide = 3cm\nfor i in range(n) { sphere { radius: r, at: (i, 0, 0)m } }\nsphere { radius: wide }";
+    let scene = scene_of(&NoFiles, text, &["n = 4", "r=2*wide"]);
+    assert_eq!(scene.primitives.len(), 5);
+    assert!((scene.primitives[0].shape.bounds().unwrap().max.x - 0.06).abs() < 1e-12);
+}
+
+#[test]
+fn a_file_is_read_once_and_its_blocks_are_ignored() {
+    let mut files = Memory::default();
+    files.files.insert("lib/ball.rt".into(), "import \"paint.rt\" as paint\nparam r: length = 1cm\nsphere { radius: r, material: paint.blue_one }\ncamera { from: (0, 0, 1)m }\nrender { samples: 3 }");
+    files.files.insert("lib/paint.rt".into(), "material blue_one = diffuse { color: blue }");
+    let text = "import \"lib/ball.rt\" as ball\nimport \"lib/paint.rt\" as paint\nball {}\nball { r: 2cm, at: (1, 0, 0)m }\nsphere { radius: 1cm, material: paint.blue_one }";
+    let scene = scene_of(&files, text, &[]);
+    assert_eq!(scene.primitives.len(), 3);
+    assert_eq!(scene.materials.len(), 1);
+    assert_eq!(*files.read.lock().unwrap(), ["lib/ball.rt", "lib/paint.rt"]);
+}
+
+#[test]
+fn tables_give_rows() {
+    let mut files = Memory::default();
+    files.files.insert("points.csv".into(), "x [mm],y [mm],size [mm],kind\n1,2,3,a\n4,5,6,b\n");
+    let text = "for row in table(\"points.csv\") { sphere { at: (row.x, row.y, 0), radius: if row.kind == \"a\" then row.size else 2 * row.size } }";
+    let scene = scene_of(&files, text, &[]);
+    let bounds = scene.primitives[1].shape.bounds().unwrap();
+    assert!((bounds.max.x - 0.016).abs() < 1e-12, "{bounds:?}");
+}
