@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod agreement;
 mod architecture;
 mod command;
 mod diagnostics;
@@ -13,6 +14,7 @@ mod format;
 mod fuzz;
 #[path = "../fuzz/invariants.rs"]
 mod invariants;
+mod oracle;
 mod parse;
 mod pictures;
 mod scenes;

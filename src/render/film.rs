@@ -77,14 +77,14 @@ impl Pixel {
     /// Adds a radiance. One that is too large for the scale is cut; one that is no number counts as black.
     pub fn add(&mut self, radiance: Rgb, scale: f64) {
         debug_assert!(radiance.is_finite(), "a path carries {radiance}");
-        let fixed =
-            |v: f64| if v.is_nan() { 0.0 } else { (v * scale).clamp(-MOST_FIXED, MOST_FIXED).round() };
-        let value = Rgb::new(fixed(radiance.x), fixed(radiance.y), fixed(radiance.z));
-        for (sum, v) in self.sum.iter_mut().zip(value.to_array()) {
-            *sum += v as i64;
+        let fixed = |v: f64| nearest((v * scale).clamp(-MOST_FIXED, MOST_FIXED));
+        let fixed = radiance.to_array().map(fixed);
+        for (sum, v) in self.sum.iter_mut().zip(fixed) {
+            *sum += v;
         }
+        let value = Rgb::from_array(fixed.map(|v| v as f64));
         // Rounded, not cut: a sum of squares that is too small on average would hide the noise of even pixels.
-        let magnitude = luminance(value).abs().round() as u128;
+        let magnitude = u128::from(nearest(luminance(value).abs()) as u64);
         self.luminance_squares += magnitude * magnitude;
         self.samples += 1;
     }
@@ -92,7 +92,7 @@ impl Pixel {
     /// Adds the weight of a sample to what is covered, or to what is open to a transparent background.
     pub fn cover(&mut self, open: bool, weight: f64) {
         let sum = if open { &mut self.open } else { &mut self.covered };
-        *sum += (weight * WEIGHT_SCALE).round() as i64;
+        *sum += nearest(weight * WEIGHT_SCALE);
     }
 
     /// Adds the samples of another.
@@ -133,6 +133,11 @@ impl Pixel {
         let variance = (self.luminance_squares as f64 / n - mean * mean).max(0.0);
         (variance / (n - 1.0)).sqrt() / scale
     }
+}
+
+/// The nearest whole number; 0 of what is no number. `f64::round` is a call where a processor may lack the instruction.
+fn nearest(v: f64) -> i64 {
+    (v + 0.5f64.copysign(v)) as i64
 }
 
 /// Sums over a window of a picture.

@@ -96,7 +96,8 @@ pub struct Rendered {
     pub film: Film,
     /// Samples of each pixel.
     pub samples: u32,
-    /// The noise reached, as a ratio of white: see [`Film::noise`].
+    /// The noise reached, as a ratio of white: see [`Film::noise`]. 0 where the target is a number of samples, and
+    /// nobody asked.
     pub noise: f64,
     /// Whether the target was met: false only where a noise target was not, with [`MOST_NOISE_SAMPLES`].
     pub target_met: bool,
@@ -188,8 +189,11 @@ impl<'s> Tracer<'s> {
         let mut done = 0;
         loop {
             self.add_samples(&mut film, done..samples, control)?;
-            let noise = film.noise(shown.stops, shown.tonemap);
-            let target_met = matches!(target, Target::Samples(_)) || noise <= wanted;
+            let noise = match target {
+                Target::Samples(_) => 0.0,
+                Target::Noise(_) => film.noise(shown.stops, shown.tonemap),
+            };
+            let target_met = noise <= wanted;
             if target_met || samples >= most {
                 return Ok(Rendered { film, samples, noise, target_met });
             }

@@ -9,10 +9,10 @@ mod surface;
 
 use super::shape::{Face, Place, SurfacePoint};
 use super::warp;
+use panorama::Sky;
 use rt_lang::color::{Rgb, luminance};
 use rt_lang::math::{DVec3, PI, basis};
 use rt_lang::scene::{Light, Material, Paint, PrimitiveId, Scene, Shape};
-use panorama::Sky;
 use std::collections::BTreeMap;
 use surface::Glowing;
 

@@ -8,10 +8,10 @@
 //! A fixed order of all solids could not say that: let A lie in B, C stick out of both, and A, C, B be declared in
 //! this order. Then A wins over B, B over C, and C over A. So the medium is chosen for each set of solids anew.
 
-use rt_lang::color::Rgb;
-use rt_lang::math::exp;
 use crate::oracle::accel::Accel;
 use crate::oracle::shape::Ray;
+use rt_lang::color::Rgb;
+use rt_lang::math::exp;
 use rt_lang::scene::nesting::lies_in;
 use rt_lang::scene::shape::Bounds;
 use rt_lang::scene::{Material, PrimitiveId, Projection, Scene, Shape};

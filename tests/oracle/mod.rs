@@ -1,4 +1,8 @@
-//! From scene to film; cannot fail.
+//! An integrator to hold the tracer's against: one path at a time, in double precision, as readable as it gets.
+//!
+//! It shares with the tracer what a scene is, colours and mathematics, and nothing else: not the sampler, the film, the
+//! equations of surfaces, nor how light is found. So where the two agree, neither errs alone. It was written first; where
+//! the tracer learns something new, this learns it too, in its own way.
 //!
 //! ```text
 //! Tracer::new ──▶ prepass ──▶ render: passes of samples × tiles of pixels ──▶ film
@@ -22,6 +26,8 @@
 //! The same scene gives the same bits for any number of threads, and a window the same bits as that part of the
 //! whole: random numbers are a function of pixel and sample, and sums are exact.
 
+#![allow(dead_code, reason = "it is a whole renderer, of which tests use what they need")]
+
 mod accel;
 pub mod bsdf;
 mod bvh;
@@ -37,11 +43,10 @@ pub mod sampler;
 pub mod shape;
 pub mod texture;
 
+#[cfg(test)]
 mod tests;
 mod warp;
 
-use rt_lang::color::Rgb;
-use rt_lang::scene::{Material, Paint, Scene, Target, Tonemap};
 use accel::Accel;
 use bsdf::{Bsdf, Coat};
 use camera::Eye;
@@ -54,6 +59,8 @@ use media::{Boundary, Dielectrics, Inside};
 pub use observer::Observer;
 pub use prepass::Prepass;
 use rayon::prelude::*;
+use rt_lang::color::Rgb;
+use rt_lang::scene::{Material, Paint, Scene, Target, Tonemap};
 use sampler::Sampler;
 use shape::{Place, Ray, SurfacePoint};
 

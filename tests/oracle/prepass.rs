@@ -7,9 +7,9 @@ use super::observer::Observer;
 use super::sampler::Sampler;
 use super::shape::Place;
 use super::{Tracer, film, integrator};
+use rayon::prelude::*;
 use rt_lang::color::{Rgb, luminance};
 use rt_lang::math::{DVec2, exp, ln};
-use rayon::prelude::*;
 use std::f64::consts::LN_2;
 
 /// What the first look found.

@@ -244,7 +244,7 @@ impl Leaf {
         let mut from = 0;
         while from < WIDE {
             let t = self.meet(g, lanes, from);
-            let ahead = g.f(0.0).lt(t) & t.le(g.f(hit.t));
+            let ahead = g.f(0.0).lt(t) & t.le(g.f(hit.t)) & t.lt(g.f(f32::INFINITY));
             for lane in ahead.lanes() {
                 let place = One.u(place(self.slots[from + lane], Face::Side));
                 hit.take(Hits { t: t.get(lane), place, detail: One.u(0) }, except);

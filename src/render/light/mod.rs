@@ -188,9 +188,9 @@ impl Lights {
         self.lamps.is_empty()
     }
 
-    /// Whether there is more than one.
+    /// Whether there is more than one, or one of several parts.
     pub fn needs_choice(&self) -> bool {
-        self.lamps.len() > 1
+        self.lamps.len() > 1 || self.lamps.iter().any(|lamp| matches!(lamp.kind, Kind::Surface(_)))
     }
 
     /// One of the lights.

@@ -73,13 +73,15 @@ impl Quadric {
         let d = self.object(l, rays.d);
 
         // A t² + 2B t + C = 0, where q takes the value A t² + 2B t + C at o + t d. By Lagrange's identity the
-        // quadratic part of B² − AC is a form of o × d, which does not cancel for a small surface far away.
+        // quadratic part of B² − AC is a form of o × d, which does not cancel for a small surface far away; so is what
+        // the linear part of q adds to it.
         let (s, h) = (self.sign, self.slope);
         let a = d.x * d.x + d.y * d.y * s + d.z * d.z;
         let b = o.x * d.x + (o.y * s + h) * d.y + o.z * d.z;
         let c = on_side.pick(zero, o.x * o.x + (o.y * s + 2.0 * h) * o.y + o.z * o.z + self.constant);
         let m = o.cross(d);
-        let discriminant = -(m.x * m.x * s + m.y * m.y + m.z * m.z * s) - a * self.constant;
+        let linear = ((d.x * m.z - d.z * m.x) * 2.0 + d.y * d.y * h) * h;
+        let discriminant = linear - (m.x * m.x * s + m.y * m.y + m.z * m.z * s) - a * self.constant;
         let root = on_side.pick(b.magnitude(), discriminant.root());
         let q = -(b + root.signed_as(b));
         let (first, second) = (c / q, q / a);

@@ -17,9 +17,9 @@ fn check_density(bsdf: &Bsdf) {
         let draw = |[lobe, a, b]: [f64; 3]| {
             let sample = bsdf.sample(wo, lobe, [a, b]).filter(|sample| !sample.specular)?;
             let (pdf, f) = (bsdf.pdf(wo, sample.wi), bsdf.eval(wo, sample.wi));
-            assert!((sample.pdf / pdf - 1.0).abs() < 1e-3, "{} {pdf}", sample.pdf);
+            assert!((sample.pdf / pdf - 1.0).abs() < 5e-3, "{} {pdf}", sample.pdf);
             assert!(
-                (sample.weight * pdf - f).abs().max_element() <= 1e-3 * f.max_element(),
+                (sample.weight * pdf - f).abs().max_element() <= 5e-3 * f.max_element(),
                 "{}",
                 sample.weight
             );

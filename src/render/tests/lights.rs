@@ -247,7 +247,8 @@ fn contributions_add_up_and_cut_paths_are_told() {
     for i in 0..500 {
         let mut sum = Sum::default();
         let value = tracer.sample(160 + i % 20, 120 + i / 20, 0, &mut sum);
-        assert_eq!(value, sum.radiance);
+        // The tracer adds in single precision.
+        assert!((value - sum.radiance).abs().max_element() <= 1e-6 * sum.radiance.max_element());
         assert!(sum.vertices <= 4 && (sum.cut == 0 || sum.vertices == 4));
         cut += sum.cut;
         most = most.max(sum.most);

@@ -1,9 +1,9 @@
 //! The Lambertian surface.
 
 use super::Sample;
+use crate::oracle::warp;
 use rt_lang::color::Rgb;
 use rt_lang::math::{DVec3, PI};
-use crate::oracle::warp;
 
 pub(super) fn sample(color: Rgb, u: [f64; 2]) -> Option<Sample> {
     let wi = warp::cosine(u);

@@ -11,9 +11,9 @@ mod microfacet;
 mod plastic;
 mod specular;
 
+pub use plastic::Coat;
 use rt_lang::color::Rgb;
 use rt_lang::math::DVec3;
-pub use plastic::Coat;
 
 /// Widths below this are polished: the reflection of a point is narrower than a thousandth of a degree.
 pub const SMOOTH_ALPHA: f64 = 1e-5;

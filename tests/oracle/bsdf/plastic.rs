@@ -7,9 +7,9 @@
 
 use super::microfacet::{distribution, masking, sample_visible, shadowing, visible_pdf};
 use super::{SMOOTH_ALPHA, Sample, fresnel, reflect, specular};
+use crate::oracle::warp;
 use rt_lang::color::{Rgb, luminance};
 use rt_lang::math::{DVec3, PI};
-use crate::oracle::warp;
 
 /// A coat: its shape, and what it lets through.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,10 +4,10 @@
 //! inverting a running sum (Pharr, Jakob and Humphreys, *Physically Based Rendering*, 4th ed. 2023, §A.5.2 and
 //! §12.5.2). Within a pixel directions are uniform in solid angle, which is exact at the poles too.
 
+use crate::oracle::texture::bilinear;
 use rt_lang::asset::Image;
 use rt_lang::color::{Rgb, luminance};
 use rt_lang::math::{DMat3, DVec2, DVec3, PI, atan2, cos, sin};
-use crate::oracle::texture::bilinear;
 use rt_lang::scene::{Panorama, Scene};
 use std::sync::Arc;
 

@@ -1,10 +1,10 @@
 //! Glowing surfaces, sampled by area.
 
 use super::{LightSample, Receiver, Target};
-use rt_lang::color::Rgb;
-use rt_lang::math::{DVec3, PI};
 use crate::oracle::shape::{Face, Place, Ray, SurfacePoint, Wall, surface_point};
 use crate::oracle::warp;
+use rt_lang::color::Rgb;
+use rt_lang::math::{DVec3, PI};
 use rt_lang::scene::shape::{Form, Placed, Quadric, triangle_area};
 use rt_lang::scene::{PrimitiveId, Shape};
 

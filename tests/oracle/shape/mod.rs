@@ -11,10 +11,10 @@ mod plane;
 mod quadric;
 mod sphere;
 
-use rt_lang::math::DVec3;
-use rt_lang::scene::{PrimitiveId, Shape};
 pub use mesh::Tree;
 pub(super) use mesh::uv as mesh_uv;
+use rt_lang::math::DVec3;
+use rt_lang::scene::{PrimitiveId, Shape};
 
 /// A half-line, and the surface it starts on.
 #[derive(Clone, Copy, Debug)]

@@ -1,9 +1,9 @@
 //! Materials: densities, furnaces, Fresnel, Snell.
 
 use super::*;
-use rt_lang::math::{asin, cos, sin};
 use crate::oracle::bsdf::{SMOOTH_ALPHA, fresnel};
 use crate::oracle::integrator::LEAST_COSINE;
+use rt_lang::math::{asin, cos, sin};
 
 fn toward(angle: f64) -> DVec3 {
     v(sin(angle), 0.0, cos(angle))

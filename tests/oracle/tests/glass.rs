@@ -1,8 +1,8 @@
 //! Media: absorption, nesting, cameras inside.
 
 use super::*;
-use rt_lang::math::exp;
 use crate::oracle::shape::Ray;
+use rt_lang::math::exp;
 
 fn tinted(ior: f64, absorption: f64) -> Material {
     Material::Dielectric { ior, absorption: Rgb::splat(absorption), alpha: 0.0 }

@@ -1,9 +1,9 @@
 //! Light that arrives: closed forms, and the two ways to find it.
 
 use super::*;
-use rt_lang::math::{acos, cos, sin};
 use crate::oracle::light::{Receiver, Source};
 use crate::oracle::observer::Contribution;
+use rt_lang::math::{acos, cos, sin};
 
 /// A white floor seen from straight above, off to the side of the light.
 fn floor_below() -> Scene {

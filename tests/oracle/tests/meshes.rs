@@ -1,8 +1,8 @@
 //! Triangle meshes.
 
 use super::*;
-use rt_lang::asset::Mesh;
 use crate::oracle::shape::{Ray, intersect};
+use rt_lang::asset::Mesh;
 use rt_lang::scene::shape::Instance;
 use std::sync::Arc;
 

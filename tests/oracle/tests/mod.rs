@@ -57,7 +57,15 @@ fn scene(from: DVec3, look: DVec3) -> Scene {
     }
 }
 
-impl Scene {
+/// Builds a scene piece by piece.
+trait Build {
+    fn with(self, shape: Shape, material: Material) -> Scene;
+    fn with_light(self, light: Light) -> Scene;
+    fn with_sky(self, radiance: f64) -> Scene;
+    fn bounces(self, bounces: u32) -> Scene;
+}
+
+impl Build for Scene {
     fn with(mut self, shape: Shape, material: Material) -> Scene {
         self.primitives.push(Primitive {
             shape,

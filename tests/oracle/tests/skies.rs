@@ -1,9 +1,9 @@
 //! Skies that are pictures.
 
 use super::*;
+use crate::oracle::light::{Receiver, Source};
 use rt_lang::asset::Image;
 use rt_lang::math::{cos, sin};
-use crate::oracle::light::{Receiver, Source};
 use rt_lang::scene::{ImageId, Panorama};
 use std::sync::Arc;
 

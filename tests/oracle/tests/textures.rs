@@ -1,10 +1,10 @@
 //! Colour by place, and glowing patterns.
 
 use super::*;
-use rt_lang::asset::Image;
-use rt_lang::math::{DAffine3, cos, sin};
 use crate::oracle::shape::{Face, SurfacePoint};
 use crate::oracle::texture::{Spot, clouds, paint};
+use rt_lang::asset::Image;
+use rt_lang::math::{DAffine3, cos, sin};
 use rt_lang::scene::{FrameId, ImageId, Paint, Texture, TextureId};
 use std::sync::Arc;
 
