@@ -21,6 +21,9 @@
 //! | [`eval`] | program to things, each with the chain of uses that made it | the renderer |
 //! | [`lower`] | things to scene: defaults, cameras, transforms, radiometry | text |
 //! | [`scene`] | the picture in its simplest form | where it came from |
+//! | [`export`] | scene to the texts of other renderers | how this one draws it |
+//! | [`expand`] | scene to a flat text of the language | the text it came from |
+//! | [`lint`] | what is probably not meant in a scene | text |
 //! | [`render`] | scene to film; cannot fail | places, files, syntax |
 //! | [`output`] | film to the bytes of image files, and back | files |
 //! | [`explain`] | the page on each diagnostic | how it is shown |
@@ -35,10 +38,13 @@ pub mod color;
 pub mod develop;
 pub mod diagnostic;
 pub mod eval;
+pub mod expand;
 pub mod explain;
+pub mod export;
 pub mod files;
 pub mod import;
 pub mod inventory;
+pub mod lint;
 pub mod lower;
 pub mod math;
 pub mod mend;
@@ -140,6 +146,9 @@ fn stages(
     diagnostics.extend(lowered.diagnostics);
     if !diagnostic::any_errors(&diagnostics) {
         diagnostics.extend(lower::nothing_to_see(&things, main));
+    }
+    if let Some(scene) = lowered.scene.as_ref().filter(|_| !diagnostic::any_errors(&diagnostics)) {
+        diagnostics.extend(lint::lint(scene, &things.origins, &lowered.marks));
     }
     let unused = allow::allow(&program.allows, &mut diagnostics);
     diagnostics.extend(unused);

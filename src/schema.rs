@@ -392,6 +392,9 @@ kinds! {
         TINT "tint": Color = Value("white"), REFLECTANCE;
         /// See `tint`.
         DEPTH "depth": Length = Value("1cm"), POSITIVE;
+        /// What is absorbed besides, linear and per metre, as tables of materials give it: a share of
+        /// exp(−absorption × metres) is left.
+        ABSORPTION "absorption": Color = Value("black"), NOT_NEGATIVE;
         /// From 0, polished, to 1, frosted (GGX with α = roughness²).
         ROUGHNESS "roughness": Number = Value("0"), within(0.0, 1.0);
     }

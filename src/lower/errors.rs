@@ -172,14 +172,6 @@ pub(super) fn too_many_pixels(size: [u32; 2], span: Option<Span>) -> Diagnostic 
     Diagnostic::new(Code::E0406, message, span.unwrap_or_else(start)).at("too large a picture")
 }
 
-pub(super) fn camera_inside(camera: Option<Span>, solid: Span) -> Diagnostic {
-    let place = camera.unwrap_or(solid);
-    Diagnostic::new(Code::W0601, "the camera is inside a solid, and sees only that", place)
-        .at("inside")
-        .label(solid, "this solid")
-        .help("move the camera out, or make the solid smaller")
-}
-
 pub(super) fn looks_at_itself(from: Span, look: Option<Span>) -> Diagnostic {
     let diagnostic = Diagnostic::new(Code::E0404, "the camera looks at the point where it stands", from)
         .at("stands here")

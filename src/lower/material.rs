@@ -27,10 +27,6 @@ impl Materials {
         })
     }
 
-    pub(super) fn get(&self, id: MaterialId) -> &Material {
-        &self.all[id.0 as usize]
-    }
-
     pub(super) fn all(&self) -> impl Iterator<Item = &Material> {
         self.all.iter()
     }
@@ -69,7 +65,8 @@ pub(super) fn lower(
         let absorption = |channel: f64| if channel >= 1.0 { 0.0 } else { -ln(channel) / depth };
         Material::Dielectric {
             ior: things.read(made, dielectric::IOR),
-            absorption: DVec3::new(absorption(tint.x), absorption(tint.y), absorption(tint.z)),
+            absorption: DVec3::new(absorption(tint.x), absorption(tint.y), absorption(tint.z))
+                + things.read(made, dielectric::ABSORPTION),
             alpha: alpha(things.read(made, dielectric::ROUGHNESS)),
         }
     } else if kind == metal::KIND {

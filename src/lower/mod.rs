@@ -13,7 +13,7 @@ use crate::color::Rgb;
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Aim, Reach, Thing, ThingId, Things};
 use crate::files::Files;
-use crate::math::{DAffine3, DVec3, PI, sin};
+use crate::math::{DAffine3, PI, sin};
 use crate::scene::shape::Bounds;
 use crate::scene::{
     Develop, FrameId, Light, Material, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace,
@@ -56,6 +56,23 @@ pub struct Lowered {
     pub diagnostics: Vec<Diagnostic>,
     /// Where settings stand that only a finished picture can judge.
     pub places: Places,
+    /// Where the rest of the scene stands.
+    pub marks: Marks,
+}
+
+/// Where those parts of a scene came from that are no primitives. What was chosen for the user has no place.
+#[derive(Clone, Debug, Default)]
+pub struct Marks {
+    /// The camera's block.
+    pub camera: Option<Span>,
+    /// Where it stands: its `from`.
+    pub from: Option<Span>,
+    /// What it looks at: its `look`.
+    pub look: Option<Span>,
+    /// The lens, or what it is focused on.
+    pub focus: Option<Span>,
+    /// By the index of a light in the scene.
+    pub lights: Vec<Option<OriginId>>,
 }
 
 /// Where settings stand that only a finished picture can judge; none where the source does not give them.
@@ -99,7 +116,6 @@ pub fn lower(
     lowering.say_defaults();
     if let (Some(camera), Some(size)) = (camera, size) {
         let (trace, tonemap) = lowering.trace(&blocks, size);
-        lowering.warn_inside(camera.0.position, blocks.camera);
         let (textures, images) = lowering.textures.finish();
         lowering.out.scene = Some(Scene {
             primitives: lowering.primitives,
@@ -354,7 +370,10 @@ impl<'a> Lowering<'a> {
             Light::Sky { radiance, .. } => radiance.is_finite(),
         };
         match finite {
-            true => self.lights.push(light),
+            true => {
+                self.lights.push(light);
+                self.out.marks.lights.push(Some(thing.origin));
+            }
             false => self.report(self.used_at(thing, errors::glows_beyond(thing.made.span))),
         }
     }
@@ -481,24 +500,8 @@ impl<'a> Lowering<'a> {
                 .any(|thing| thing.made.kind.get().category == Category::Light || !thing.made.is_sound());
             if !lights {
                 self.lights.push(Light::Sky { radiance: Rgb::ONE, panorama: None });
+                self.out.marks.lights.push(None);
                 self.out.notes.push("no light: a soft white sky, as `sky {}`".into());
-            }
-        }
-    }
-
-    /// Warns of a camera that sees nothing but the inside of a solid.
-    fn warn_inside(&mut self, position: DVec3, camera: Option<&Thing>) {
-        let inside = self.primitives.iter().find(|primitive| {
-            let opaque = !matches!(self.materials.get(primitive.material), Material::Dielectric { .. });
-            opaque && primitive.shape.contains(position)
-        });
-        if let Some(primitive) = inside {
-            let chain = self.things.origins.chain(primitive.origin);
-            let place = camera.map(|camera| {
-                camera.made.given(crate::schema::camera::FROM).map_or(camera.made.span, |(_, span)| span)
-            });
-            if let Some(&solid) = chain.last() {
-                self.report(errors::camera_inside(place, solid));
             }
         }
     }

@@ -10,6 +10,7 @@
 //! - [`Scene::hash`] is canonical: equal scenes have equal hashes, and anything that may change a bit of the
 //!   picture's radiance changes it. What only develops the film is in [`Develop`], outside the hash.
 
+pub mod boxes;
 pub mod nesting;
 pub mod shape;
 pub mod texture;

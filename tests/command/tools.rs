@@ -56,16 +56,8 @@ fn codes_given(page: &str, role: Role) -> BTreeSet<String> {
 }
 
 /// Codes whose messages are still being built; what gives its code is taken off here.
-const AWAITED: &[Code] = &[
-    Code::W0602,
-    Code::W0603,
-    Code::W0604,
-    Code::W0605,
-    Code::W0606,
-    Code::W0607,
-    Code::W0608,
-    Code::W0609,
-];
+const AWAITED: &[Code] =
+    &[Code::W0602, Code::W0603, Code::W0604, Code::W0605, Code::W0606, Code::W0607, Code::W0608, Code::W0609];
 
 #[test]
 fn examples_of_the_pages_fail_by_their_own_code_and_are_mended() {

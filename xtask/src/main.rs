@@ -3,6 +3,7 @@
 //!
 //! Nothing is skipped quietly. A tool that is missing fails the step that needs it, with its name.
 
+mod export;
 mod readme;
 mod reference;
 
@@ -24,6 +25,7 @@ const STEPS: &[(&str, Step)] = &[
     ("memory", memory),
     ("licences", licences),
     ("reference", reference::agreement),
+    ("export", export::agreement),
     ("readme", readme::commands),
 ];
 
@@ -39,6 +41,7 @@ cargo xtask e2e [STEP…]
   memory     hostile sources within 2 GiB of address space
   licences   every dependency's licence is one that deny.toml allows
   reference  the room against a converged picture of another renderer (minutes)
+  export     exported scenes against Mitsuba (from PyPI) and POV-Ray (povray, of Debian)
   readme     every command of the README, in a fresh clone of HEAD
 
 Without STEP all are run. Needs python3, bash, git and, for full-disk, leave to mount a tmpfs.";

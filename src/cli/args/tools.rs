@@ -129,6 +129,46 @@ pub struct Explain {
     pub list: bool,
 }
 
+/// Flags of `rtc expand`.
+#[derive(Args)]
+pub struct Expand {
+    /// The scene; `-` is standard input.
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+
+    /// Writes the flat scene here, in place of standard output.
+    #[arg(short, long = "output", value_name = "OUT.rt")]
+    pub output: Option<PathBuf>,
+
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub reading: Reading,
+}
+
+/// Flags of `rtc export`.
+#[derive(Args)]
+pub struct Export {
+    /// The scene; `-` is standard input.
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+
+    /// Writes it here, for the renderer of the extension: xml (Mitsuba 3), pbrt (pbrt-v4) or pov (POV-Ray).
+    #[arg(short, long = "output", value_name = "OUT", required = true)]
+    pub output: PathBuf,
+
+    /// Says nearly what the renderer cannot say exactly, and lists it. Without, it is an error.
+    #[arg(long)]
+    pub approximate: bool,
+
+    /// Makes triangles, N around, of curved surfaces that the renderer does not know.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=4096))]
+    pub tessellate: Option<u32>,
+
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub reading: Reading,
+}
+
 /// Flags of `rtc info`.
 #[derive(Args)]
 pub struct Info {
