@@ -34,7 +34,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ),
     // Where pictures and meshes were read stands beside the scene.
     ("expand", &["files", "math", "color", "scene"]),
-    ("export", &["math", "color", "scene"]),
+    ("export", &["asset", "math", "color", "scene"]),
     ("lint", &["span", "diagnostic", "math", "color", "eval", "scene", "lower"]),
     ("render", &["math", "color", "develop", "asset", "scene"]),
     ("output", &["math", "color", "develop", "scene"]),

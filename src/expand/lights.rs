@@ -42,7 +42,8 @@ pub(super) fn lamp(flat: &Flat, light: &Light) -> Result<String, &'static str> {
 /// A picture of the sky, as a turn where there is one that gives the same bits, else in a group.
 fn sky(flat: &Flat, radiance: Rgb, panorama: &Panorama) -> Result<String, &'static str> {
     let world_from_image = panorama.image_from_world.transpose();
-    let fields = format!("color: {}, image: {}", rgb(radiance), flat.image(panorama.image)?);
+    // It has no colour besides its picture, so all channels are the same.
+    let fields = format!("image: {}, radiance: {}W/m2", flat.image(panorama.image)?, number(radiance.x));
     if world_from_image == DMat3::IDENTITY {
         return Ok(format!("sky {{ {fields} }}"));
     }
