@@ -8,53 +8,174 @@
 //! - Quadrics have unit axes and the whole of their map in `place: matrix(…)`.
 //! - A direction of length 1 is kept by lowering. So that the camera's survives the difference of two points, it
 //!   looks at a point so far away along it that its own place is lost in rounding.
+//! - The spaces of textures lie in `grain: matrix(…)`.
 //! - Where lowering divides or takes a tangent, the number is searched that leads to the one wanted. There is one,
 //!   since the scene came from a text.
 
-use crate::color::Rgb;
-use crate::math::{DAffine3, DMat3, DVec3, PI, atan2, sin, tan};
-use crate::scene::shape::{Form, Quadric};
-use crate::scene::{
-    Camera, Develop, Light, Material, Paint, Primitive, Projection, Scene, Shape, Target, Trace,
-};
-use std::fmt::Write;
+mod lights;
+mod numbers;
+mod view;
 
-/// Writes a scene as a text.
+use crate::color::Rgb;
+use crate::files::{Contents, FilePath};
+use crate::math::{DAffine3, DMat3, DVec3};
+use crate::scene::shape::{Form, Quadric};
+use crate::scene::{ImageId, Light, Material, Paint, Primitive, Scene, Shape, Texture, TextureId};
+use numbers::{at, matrix, number, preimage, quoted, rgb, triple};
+
+/// Writes a scene as a text that lies in a place below the root folder. `contents` says where the scene's pictures and
+/// meshes were read; the text names them by paths from its place.
 ///
 /// # Errors
 ///
-/// Why there is none: textures and the pictures of skies are placed by maps that only the text they came from has.
-pub fn expand(scene: &Scene) -> Result<String, &'static str> {
-    if !scene.textures.is_empty() || !scene.images.is_empty() {
-        return Err("it has textures or pictures, whose places only the scene's own text says");
+/// What has no file: a picture or mesh that was not read from any.
+pub fn expand(scene: &Scene, contents: &Contents, place: &FilePath) -> Result<String, &'static str> {
+    let mut flat = Flat { scene, contents, place, names: vec![], text: String::new() };
+    for (index, texture) in scene.textures.iter().enumerate() {
+        let texture = flat.texture(texture)?;
+        flat.put(format!("let texture{index} = {texture}"));
     }
-    if scene.primitives.iter().any(|primitive| matches!(primitive.shape, Shape::Mesh(_))) {
-        return Err("it has meshes, whose files only the scene's own text names");
+    flat.name_materials();
+    let (surfaces, lights) = flat.before_sky();
+    for primitive in &scene.primitives[..surfaces] {
+        flat.surface(primitive)?;
     }
-    let mut text = String::new();
-    let names = name_materials(scene, &mut text);
-    for primitive in &scene.primitives {
-        surface(&mut text, scene, primitive, &names);
+    for light in &scene.lights[..lights] {
+        flat.put(lights::lamp(&flat, light)?);
     }
-    scene.lights.iter().for_each(|light| lamp(&mut text, light));
-    camera(&mut text, &scene.camera, &scene.develop);
-    render(&mut text, &scene.trace, &scene.develop);
-    Ok(text)
+    for primitive in &scene.primitives[surfaces..] {
+        flat.surface(primitive)?;
+    }
+    for light in &scene.lights[lights..] {
+        flat.put(lights::lamp(&flat, light)?);
+    }
+    flat.put(view::camera(&scene.camera, &scene.develop));
+    flat.put(view::render(&scene.trace, &scene.develop));
+    Ok(flat.text)
 }
 
-/// Declares the materials that several surfaces share; the others are written where they are used.
-fn name_materials(scene: &Scene, text: &mut String) -> Vec<Option<String>> {
-    let mut uses = vec![0u32; scene.materials.len()];
-    scene.primitives.iter().for_each(|primitive| uses[primitive.material.0 as usize] += 1);
-    let shared = uses.iter().map(|uses| *uses > 1).enumerate();
-    let names: Vec<Option<String>> =
-        shared.map(|(index, shared)| shared.then(|| format!("surface{index}"))).collect();
-    for (name, material) in names.iter().zip(&scene.materials) {
-        if let Some(name) = name {
-            put(text, format_args!("material {name} = {}", made(material)));
+/// A text on its way.
+struct Flat<'s> {
+    scene: &'s Scene,
+    contents: &'s Contents,
+    place: &'s FilePath,
+    /// Of the materials that were declared.
+    names: Vec<Option<String>>,
+    text: String,
+}
+
+impl Flat<'_> {
+    /// Adds a line.
+    fn put(&mut self, line: String) {
+        self.text.push_str(&line);
+        self.text.push('\n');
+    }
+
+    /// Declares the materials that several surfaces share; the others are written where they are used.
+    fn name_materials(&mut self) {
+        let mut uses = vec![0u32; self.scene.materials.len()];
+        self.scene.primitives.iter().for_each(|primitive| uses[primitive.material.0 as usize] += 1);
+        for (index, (uses, material)) in uses.into_iter().zip(&self.scene.materials).enumerate() {
+            let name = (uses > 1).then(|| format!("surface{index}"));
+            if let Some(name) = &name {
+                self.put(format!("material {name} = {}", made(material)));
+            }
+            self.names.push(name);
         }
     }
-    names
+
+    fn texture(&self, texture: &Texture) -> Result<String, &'static str> {
+        Ok(match *texture {
+            Texture::Checker { a, b, size } => {
+                format!("checker({}, {}, {}m)", paint(a), paint(b), number(size))
+            }
+            Texture::Stripes { a, b, width, along } => {
+                format!("stripes({}, {}, {}m, {})", paint(a), paint(b), number(width), triple(along))
+            }
+            Texture::Noise { a, b, size, octaves, seed } => {
+                format!("noise({}, {}, {}m, {octaves}, {seed})", paint(a), paint(b), number(size))
+            }
+            Texture::Image { image, size } => format!("image({}, {}m)", self.image(image)?, number(size.x)),
+        })
+    }
+
+    /// How many surfaces and lights come first. Pictures are numbered in the order in which they are first asked for,
+    /// so the sky comes before the first surface that shows a later picture than its own.
+    fn before_sky(&self) -> (usize, usize) {
+        let picture = |light: &Light| match light {
+            Light::Sky { panorama, .. } => panorama.map(|panorama| panorama.image),
+            Light::Point { .. } | Light::Spot { .. } | Light::Sun { .. } => None,
+        };
+        let all = self.scene.primitives.len();
+        let found = self.scene.lights.iter().enumerate().find_map(|(i, light)| Some((i, picture(light)?)));
+        let Some((sky, picture)) = found else { return (all, 0) };
+        let later = |primitive: &Primitive| {
+            let texture = self.scene.material(primitive).texture();
+            texture.is_some_and(|texture| self.shows_later(texture, picture))
+        };
+        self.scene.primitives.iter().position(later).map_or((all, 0), |surfaces| (surfaces, sky + 1))
+    }
+
+    /// Whether a texture shows a picture that comes after another.
+    fn shows_later(&self, texture: TextureId, than: ImageId) -> bool {
+        let part = |paint: Paint| matches!(paint, Paint::Texture(id) if self.shows_later(id, than));
+        match self.scene.textures[texture.0 as usize] {
+            Texture::Checker { a, b, .. } | Texture::Stripes { a, b, .. } | Texture::Noise { a, b, .. } => {
+                part(a) || part(b)
+            }
+            Texture::Image { image, .. } => image > than,
+        }
+    }
+
+    /// The path of a picture.
+    fn image(&self, id: ImageId) -> Result<String, &'static str> {
+        self.file(self.scene.images[id.0 as usize].hash()).ok_or("it has a picture that is in no file")
+    }
+
+    fn file(&self, hash: blake3::Hash) -> Option<String> {
+        Some(quoted(&self.contents.path(hash)?.written_in(self.place)))
+    }
+
+    fn surface(&mut self, primitive: &Primitive) -> Result<(), &'static str> {
+        let material = match &self.names[primitive.material.0 as usize] {
+            Some(name) => name.clone(),
+            None => made(self.scene.material(primitive)),
+        };
+        let grain = primitive.frame.map(|frame| {
+            let map = self.scene.frames[frame.0 as usize].world_from_object;
+            format!(", grain: {}", matrix(map.matrix3, map.translation))
+        });
+        let shape = self.shape(&primitive.shape)?;
+        self.put(format!("{shape}, material: {material}{} }}", grain.unwrap_or_default()));
+        Ok(())
+    }
+
+    /// A shape up to its own last field.
+    fn shape(&self, shape: &Shape) -> Result<String, &'static str> {
+        Ok(match shape {
+            Shape::Sphere { center, radius } => {
+                format!("sphere {{ {}radius: {}m", at(*center), number(*radius))
+            }
+            Shape::Plane { point, normal } => format!("plane {{ {}normal: {}", at(*point), triple(*normal)),
+            Shape::Quadric(quadric) => self::quadric(quadric),
+            Shape::Mesh(instance) => {
+                let file = self.file(instance.mesh.hash()).ok_or("it has a mesh that is in no file")?;
+                let DAffine3 { matrix3, translation } = instance.placed.world_from_object;
+                let (place, smooth) = (matrix(matrix3, translation), instance.smooth);
+                format!("mesh {{ file: {file}, smooth: {smooth}, place: {place}")
+            }
+            Shape::Disk(placed) => {
+                // Lowering turns the axes of a disk such that its normal is y.
+                let DAffine3 { matrix3: m, translation } = placed.world_from_object;
+                let place = matrix(DMat3::from_cols(m.z_axis, m.y_axis, -m.x_axis), translation);
+                format!("disk {{ radius: 1m, place: {place}")
+            }
+            Shape::Box(placed) => {
+                let place = matrix(placed.world_from_object.matrix3, placed.world_from_object.translation);
+                format!("box {{ size: (2, 2, 2)m, place: {place}")
+            }
+        })
+    }
 }
 
 fn made(material: &Material) -> String {
@@ -102,37 +223,7 @@ fn roughness(alpha: f64) -> String {
     if alpha == 0.0 { String::new() } else { format!(", roughness: {}", number(alpha.sqrt())) }
 }
 
-fn surface(text: &mut String, scene: &Scene, primitive: &Primitive, names: &[Option<String>]) {
-    let material = match &names[primitive.material.0 as usize] {
-        Some(name) => name.clone(),
-        None => made(scene.material(primitive)),
-    };
-    match &primitive.shape {
-        Shape::Sphere { center, radius } => {
-            let (at, radius) = (at(*center), number(*radius));
-            put(text, format_args!("sphere {{ {at}radius: {radius}m, material: {material} }}"));
-        }
-        Shape::Plane { point, normal } => {
-            let (at, normal) = (at(*point), triple(*normal));
-            put(text, format_args!("plane {{ {at}normal: {normal}, material: {material} }}"));
-        }
-        Shape::Quadric(quadric) => self::quadric(text, quadric, &material),
-        // Refused above.
-        Shape::Mesh(_) => {}
-        Shape::Disk(placed) => {
-            // Lowering turns the axes of a disk such that its normal is y.
-            let DAffine3 { matrix3: m, translation } = placed.world_from_object;
-            let place = matrix(DMat3::from_cols(m.z_axis, m.y_axis, -m.x_axis), translation);
-            put(text, format_args!("disk {{ radius: 1m, place: {place}, material: {material} }}"));
-        }
-        Shape::Box(placed) => {
-            let place = matrix(placed.world_from_object.matrix3, placed.world_from_object.translation);
-            put(text, format_args!("box {{ size: (2, 2, 2)m, place: {place}, material: {material} }}"));
-        }
-    }
-}
-
-fn quadric(text: &mut String, quadric: &Quadric, material: &str) {
+fn quadric(quadric: &Quadric) -> String {
     let DAffine3 { matrix3, mut translation } = quadric.world_from_object;
     let open = if quadric.capped || quadric.high == f64::INFINITY { "" } else { ", open: true" };
     let mut kind = match quadric.form {
@@ -153,7 +244,7 @@ fn quadric(text: &mut String, quadric: &Quadric, material: &str) {
     if quadric.form != Form::Ellipsoid {
         kind += open;
     }
-    put(text, format_args!("{kind}, place: {}, material: {material} }}", matrix(matrix3, translation)));
+    format!("{kind}, place: {}", matrix(matrix3, translation))
 }
 
 /// The field that ends a quadric at the same distance on both sides.
@@ -168,157 +259,4 @@ fn height(quadric: &Quadric) -> String {
 fn lowered(p: DVec3, step: DVec3) -> DVec3 {
     let part = |i: usize| preimage(p[i], p[i] - step[i], |x| step[i] + x);
     DVec3::new(part(0), part(1), part(2))
-}
-
-fn lamp(text: &mut String, light: &Light) {
-    match light {
-        Light::Point { position, intensity } => {
-            // Intensity is power over 4π.
-            let power = intensity.to_array().map(|i| preimage(i, 4.0 * PI * i, |power| power / (4.0 * PI)));
-            let (at, color) = (at(*position), rgb(Rgb::from_array(power)));
-            put(text, format_args!("light {{ {at}power: 1W, color: {color} }}"));
-        }
-        Light::Spot { position, direction, intensity, inner, outer } => {
-            // As lowering counts the solid angle of the cone.
-            let height = |angle: f64| {
-                let sine = sin(0.5 * angle);
-                2.0 * sine * sine
-            };
-            let angle = PI * (height(*inner) + height(*outer));
-            let power = intensity.to_array().map(|i| preimage(i, i * angle, |power| power / angle));
-            let soft = preimage(*inner, 1.0 - inner / outer, |soft| (1.0 - soft) * outer);
-            let aim = triple(far_along(*position, *direction));
-            let (at, color, cone) = (at(*position), rgb(Rgb::from_array(power)), number(2.0 * outer));
-            let soft = number(soft.clamp(0.0, 1.0));
-            let fields = format!("{at}power: 1W, color: {color}, aim: {aim}m, cone: {cone}rad, soft: {soft}");
-            put(text, format_args!("light {{ {fields} }}"));
-        }
-        Light::Sun { direction, irradiance, radius } => {
-            let (from, color, angle) = (triple(*direction), rgb(*irradiance), number(2.0 * radius));
-            let fields = format!("from: {from}, irradiance: 1W/m2, angle: {angle}rad, color: {color}");
-            put(text, format_args!("sun {{ {fields} }}"));
-        }
-        Light::Sky { radiance, .. } => put(text, format_args!("sky {{ color: {} }}", rgb(*radiance))),
-    }
-}
-
-fn camera(text: &mut String, camera: &Camera, develop: &Develop) {
-    let half_width = camera.half_extent.x;
-    let extent = match camera.projection {
-        Projection::Perspective => {
-            let fov = preimage(half_width, 2.0 * atan2(half_width, 1.0), |fov| tan(0.5 * fov));
-            format!("fov: {}rad", number(fov))
-        }
-        Projection::Orthographic => format!("width: {}m", number(2.0 * half_width)),
-    };
-    let look = far_along(camera.position, camera.forward);
-    let (from, look, up) = (triple(camera.position), triple(look), triple(camera.up));
-    let exposure = develop.exposure.map_or("auto".to_string(), number);
-    let mut fields = format!("from: {from}m, look: {look}m, up: {up}, {extent}, exposure: {exposure}");
-    if camera.lens_radius != 0.0 || camera.focus != 1.0 {
-        let (aperture, focus) = (number(2.0 * camera.lens_radius), number(camera.focus));
-        fields += &format!(", lens {{ aperture: {aperture}m, focus: {focus}m }}");
-    }
-    put(text, format_args!("camera {{ {fields} }}"));
-}
-
-/// A point whose difference to another, in rounded numbers, is a power of two times a direction.
-fn far_along(from: DVec3, direction: DVec3) -> DVec3 {
-    // So far that the least part of the direction still outweighs the whole of `from`.
-    let parts = direction.abs().to_array().into_iter().filter(|part| *part > 0.0);
-    let least = parts.fold(1.0, f64::min);
-    let mut scale = 1.0;
-    // 2⁶⁰ is far beyond the 53 bits of a number.
-    let wanted = from.abs().max_element() * (1u64 << 60) as f64;
-    while scale * least < wanted && scale < 1e300 {
-        scale *= 2.0;
-    }
-    let far = scale * direction;
-    let along = |i: usize| if direction[i] == 0.0 { from[i] } else { far[i] };
-    DVec3::new(along(0), along(1), along(2))
-}
-
-fn render(text: &mut String, trace: &Trace, develop: &Develop) {
-    let [width, height] = trace.size;
-    let target = match trace.target {
-        Target::Samples(samples) => format!("samples: {samples}"),
-        Target::Noise(noise) => format!("noise: {}", number(noise)),
-    };
-    let Trace { bounces, indirect, seed, .. } = trace;
-    let (filter, tonemap) = (trace.filter.word(), develop.tonemap.word());
-    let fields = [
-        format!("size: ({width}, {height})"),
-        target,
-        format!("bounces: {bounces}"),
-        format!("indirect: {indirect}"),
-        format!("seed: {seed}"),
-        format!("filter: {filter}"),
-        format!("tonemap: {tonemap}"),
-        format!("background: {}", trace.background.word()),
-    ];
-    put(text, format_args!("render {{ {} }}", fields.join(", ")));
-}
-
-/// How many numbers on each side of a guess are tried.
-const TRIES: usize = 64;
-
-/// A number that a function takes to another, near a guess; the guess itself, if none is.
-fn preimage(wanted: f64, guess: f64, function: impl Fn(f64) -> f64) -> f64 {
-    let up = std::iter::successors(Some(guess), |x| Some(x.next_up())).take(TRIES);
-    let down = std::iter::successors(Some(guess), |x| Some(x.next_down())).take(TRIES);
-    let mut near = up.zip(down).flat_map(|(above, below)| [above, below]);
-    near.find(|x| function(*x) == wanted).unwrap_or(guess)
-}
-
-/// Adds a line.
-fn put(text: &mut String, line: std::fmt::Arguments) {
-    // A string takes whatever is written to it.
-    let _ = writeln!(text, "{line}");
-}
-
-/// The field `at`, unless it is the default.
-fn at(p: DVec3) -> String {
-    if p == DVec3::ZERO { String::new() } else { format!("at: {}m, ", triple(p)) }
-}
-
-fn matrix(m: DMat3, origin: DVec3) -> String {
-    let axes = [m.x_axis, m.y_axis, m.z_axis].map(triple).join(", ");
-    format!("matrix({axes}, {}m)", triple(origin))
-}
-
-fn rgb(color: Rgb) -> String {
-    format!("rgb{}", triple(color))
-}
-
-fn triple(v: DVec3) -> String {
-    format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
-}
-
-/// The fewest digits that read back as the same number.
-fn number(x: f64) -> String {
-    let text = format!("{x:?}");
-    text.strip_suffix(".0").map_or(text.clone(), str::to_string)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_have_no_more_digits_than_they_need() {
-        for (x, text) in [(1.0, "1"), (-0.5, "-0.5"), (1e-7, "1e-7"), (0.1, "0.1"), (1e300, "1e300")] {
-            assert_eq!(number(x), text);
-        }
-    }
-
-    #[test]
-    fn a_far_point_keeps_a_direction_though_it_is_far_from_the_camera() {
-        let from = DVec3::new(0.1, -1e6, 3.0);
-        for direction in [DVec3::new(0.6, -0.8, 0.0), DVec3::new(1e-30, 0.9, 0.43588989435406744), DVec3::X] {
-            let difference = far_along(from, direction) - from;
-            let scale = difference.y / direction.y;
-            let scale = if scale.is_finite() { scale } else { difference.x };
-            assert_eq!(difference / scale, direction);
-        }
-    }
 }

@@ -61,7 +61,7 @@ pub mod units;
 use check::Setting;
 use diagnostic::{Code, Diagnostic};
 use eval::{Limits, Origins, Thing, Things};
-use files::Files;
+use files::{Contents, Files};
 use import::Imported;
 use inventory::Inventory;
 use lower::{Meshes, Overrides, Places};
@@ -80,6 +80,8 @@ pub struct Compiled {
     pub diagnostics: Vec<Diagnostic>,
     /// One line for each default that was chosen for the user.
     pub notes: Vec<String>,
+    /// Where the pictures and meshes of the scene were read.
+    pub contents: Contents,
     /// What stands in the picture.
     pub inventory: Inventory,
     /// Where settings stand that only a finished picture can judge.
@@ -164,6 +166,7 @@ fn stages(
         origins: things.origins,
         diagnostics,
         notes: lowered.notes,
+        contents: lowered.contents,
         main,
         allows: program.allows,
         places: lowered.places,
@@ -178,6 +181,7 @@ impl Compiled {
             origins: Origins::default(),
             inventory: Inventory::default(),
             notes: vec![],
+            contents: Contents::default(),
             main: diagnostic.primary.span.source,
             diagnostics: vec![diagnostic],
             allows: vec![],

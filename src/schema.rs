@@ -261,6 +261,14 @@ pub const PLACED: &[Field] = &[
         range: ANY,
         doc: "A pipeline read left to right: `scale(2) |> turn(z: 10deg) |> move(0, 1m, 0)`.",
     },
+    Field {
+        name: "grain",
+        ty: Transform::TYPE,
+        default: Absent("the thing's own space, which moves with it"),
+        range: ANY,
+        doc: "Where the space of its texture lies in that around the thing, so that several can be cut from one \
+              block. In a group: where it lies in the group, for members that have none.",
+    },
 ];
 
 /// Keys to the fields of [`PLACED`].
@@ -272,6 +280,8 @@ pub mod placed {
     pub const AT: Key<Point> = Key { place: Place::Common(1), ty: PhantomData };
     /// A pipeline of transforms.
     pub const PLACE: Key<Transform> = Key { place: Place::Common(2), ty: PhantomData };
+    /// Where the space of its texture lies.
+    pub const GRAIN: Key<Transform> = Key { place: Place::Common(3), ty: PhantomData };
 }
 
 /// Angle of view in radians where neither camera nor lens says: the words of `fov` say the same.

@@ -32,8 +32,9 @@ const EDGES: &[(&str, &[&str])] = &[
         "lower",
         &["span", "source", "diagnostic", "files", "math", "color", "schema", "eval", "asset", "scene"],
     ),
-    ("expand", &["math", "color", "scene"]),
-    ("export", &["math", "color", "scene"]),
+    // Where pictures and meshes were read stands beside the scene.
+    ("expand", &["files", "math", "color", "scene"]),
+    ("export", &["asset", "math", "color", "scene"]),
     ("lint", &["span", "diagnostic", "math", "color", "eval", "scene", "lower"]),
     ("render", &["math", "color", "develop", "asset", "scene"]),
     ("output", &["math", "color", "develop", "scene"]),

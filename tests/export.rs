@@ -18,7 +18,7 @@ fn exports_are_as_they_were() {
             let options = Options { stem: "small".into(), approximate: true, tessellate: Some(3) };
             let exported = export(&scene, renderer, options).unwrap();
             let notes: String = exported.notes.iter().map(|note| format!("note: {note}\n")).collect();
-            let files: String = exported.files.iter().map(|(name, text)| format!("{name}:\n{text}")).collect();
+            let files: String = exported.files.iter().map(|(name, bytes)| format!("{name}:\n{}", String::from_utf8_lossy(bytes))).collect();
             insta::assert_snapshot!(name, exported.text + &notes + &files);
         }
     });

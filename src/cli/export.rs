@@ -48,10 +48,10 @@ fn write(
     terminal: Terminal,
     interrupt: &Interrupt,
 ) -> Result<Exit, Problem> {
-    let beside = exported.files.iter().map(|(name, text)| (output.with_file_name(name), text));
-    for (path, text) in beside.chain([(output.to_path_buf(), &exported.text)]) {
+    let beside = exported.files.iter().map(|(name, bytes)| (output.with_file_name(name), bytes.as_slice()));
+    for (path, bytes) in beside.chain([(output.to_path_buf(), exported.text.as_bytes())]) {
         let mut aside = Aside::beside(&path, interrupt)?;
-        aside.write(text.as_bytes())?;
+        aside.write(bytes)?;
         aside.finish()?;
     }
     exported.notes.iter().for_each(|note| terminal.line(&format!("note: {note}")));

@@ -120,10 +120,8 @@ impl<'p> Evaluator<'p> {
         let (outer, group, level) = (self.link, self.group, self.buffers.len() - 1);
         let aims = level > 0 && made.values.iter().any(|value| matches!(value, Value::Thing(_)));
         let out = self.out();
-        let mut link = out.link(span, outer);
-        if let Some(base) = &made.base {
-            link = out.link(base.span, link);
-        }
+        // The text of a prototype is not where the thing was put into the picture.
+        let link = out.link(span, outer);
         out.aims |= aims;
         out.things.push(Stored { made: made.clone(), group, link });
         Some(made)

@@ -83,6 +83,7 @@ impl Evaluator<'_> {
             let thing = Thing {
                 made: stored.made.clone(),
                 world_from_object: carried * placement(&stored.made),
+                world_from_grain: None,
                 material: None,
                 origin: OriginId(0),
                 hidden: false,

@@ -4,14 +4,17 @@
 //! left. Opaque materials are black from behind unless they are `twosided`.
 
 use super::triangles::Triangles;
-use super::{TESSELLATE, Writer, media, number, numbers, triangles};
+use super::{TESSELLATE, Writer, media, number, numbers, panorama, triangles};
 use crate::color::Rgb;
 use crate::math::{DAffine3, DMat3, DVec3, PI, atan2};
 use crate::scene::shape::{Form, Placed, Quadric};
-use crate::scene::{Filter, Light, Material, OriginId, Paint, Primitive, Projection, Shape};
+use crate::scene::{Filter, Light, Material, OriginId, Paint, Panorama, Primitive, Projection, Shape};
 
 /// The size of a plane's stand-in, in sizes of the scene.
 const FAR: f64 = 1e4;
+
+/// Why a texture is not written.
+const TEXTURES: &str = "lays textures on surfaces, where ours fill space or lie otherwise";
 
 pub(super) fn write(writer: &mut Writer) {
     let scene = writer.scene;
@@ -108,8 +111,22 @@ fn lamp(writer: &mut Writer, light: &Light) {
         Light::Sky { radiance, panorama: None } => {
             writer.put(format!("<emitter type=\"constant\">{}</emitter>", rgb("radiance", *radiance)));
         }
-        Light::Sky { panorama: Some(_), .. } => writer.refuse(None, "is not told of a sky's picture", None),
+        Light::Sky { radiance, panorama: Some(panorama) } => sky(writer, *radiance, panorama),
     }
+}
+
+/// Its picture has the centre at +z, ours at −z: half a turn about y. Its first and last rows lie on the poles.
+fn sky(writer: &mut Writer, radiance: Rgb, panorama: &Panorama) {
+    let image = &writer.scene.images[panorama.image.0 as usize];
+    let name = format!("{}-sky.pfm", writer.options.stem);
+    writer.out.files.push((name.clone(), panorama::with_rows_on_poles(image)));
+    let half_turn = DMat3::from_diagonal(DVec3::new(-1.0, 1.0, -1.0));
+    let to_world = transform(panorama.image_from_world.transpose() * half_turn, DVec3::ZERO);
+    // It has no colour besides its picture: all channels are the same.
+    let scale = float_of("scale", radiance.x);
+    writer.put(format!(
+        "<emitter type=\"envmap\"><string name=\"filename\" value=\"{name}\"/>{scale}{to_world}</emitter>"
+    ));
 }
 
 fn surface(writer: &mut Writer, primitive: &Primitive, around: f64) {
@@ -135,13 +152,7 @@ fn surface(writer: &mut Writer, primitive: &Primitive, around: f64) {
             let Placed { world_from_object: map, .. } = **placed;
             shape(writer, "cube", &transform(map.matrix3, map.translation), &material);
         }
-        Shape::Mesh(instance) => {
-            if !instance.smooth
-                || writer.nearly(origin, "is given no smooth normals", "meshes have flat triangles")
-            {
-                mesh(writer, &triangles::of(&primitive.shape, 0).unwrap_or_default(), &material);
-            }
-        }
+        Shape::Mesh(_) => mesh(writer, &triangles::of(&primitive.shape, 0).unwrap_or_default(), &material),
         Shape::Quadric(quadric) => self::quadric(writer, primitive, quadric, &material),
     }
 }
@@ -192,8 +203,9 @@ fn quadric(writer: &mut Writer, primitive: &Primitive, quadric: &Quadric, materi
 /// Triangles lie in a file of their own.
 fn mesh(writer: &mut Writer, triangles: &Triangles, material: &str) {
     let name = format!("{}-{}.ply", writer.options.stem, writer.out.files.len());
-    writer.out.files.push((name.clone(), triangles.ply()));
-    let flat = "<boolean name=\"face_normals\" value=\"true\"/>";
+    writer.out.files.push((name.clone(), triangles.ply().into_bytes()));
+    let flat = triangles.normals.is_empty();
+    let flat = format!("<boolean name=\"face_normals\" value=\"{flat}\"/>");
     shape(writer, "ply", &format!("<string name=\"filename\" value=\"{name}\"/>{flat}"), material);
 }
 
@@ -258,7 +270,7 @@ fn material(writer: &mut Writer, primitive: &Primitive, around: f64) -> Option<S
             format!("{black}<emitter type=\"area\">{}</emitter>", rgb("radiance", *radiance))
         }
         Material::Emitter { pattern: Some(_), .. } => {
-            writer.refuse(origin, "is not told of textures", None);
+            writer.refuse(origin, TEXTURES, None);
             return None;
         }
     })
@@ -279,7 +291,7 @@ fn plain(writer: &mut Writer, origin: Option<OriginId>, paint: Paint) -> Option<
     match paint {
         Paint::Plain(color) => Some(color),
         Paint::Texture(_) => {
-            writer.refuse(origin, "is not told of textures", None);
+            writer.refuse(origin, TEXTURES, None);
             None
         }
     }

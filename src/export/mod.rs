@@ -9,6 +9,7 @@
 mod media;
 mod mitsuba;
 mod pbrt;
+mod panorama;
 mod pov;
 mod triangles;
 
@@ -44,7 +45,7 @@ pub struct Exported {
     /// The scene file.
     pub text: String,
     /// Files that lie beside it, by name.
-    pub files: Vec<(String, String)>,
+    pub files: Vec<(String, Vec<u8>)>,
     /// What is not quite as in the scene, a line each.
     pub notes: BTreeSet<String>,
 }

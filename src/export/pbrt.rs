@@ -13,6 +13,9 @@ use crate::scene::{Filter, Light, Material, OriginId, Paint, Primitive, Projecti
 /// The size of a plane's stand-in, in sizes of the scene.
 const FAR: f64 = 1e4;
 
+/// Why a texture is not written.
+const TEXTURES: &str = "filters textures, and lays pictures on surfaces otherwise";
+
 pub(super) fn write(writer: &mut Writer) {
     camera(writer);
     writer.put("WorldBegin");
@@ -85,7 +88,10 @@ fn lamp(writer: &mut Writer, light: &Light) {
         Light::Sky { radiance, panorama: None } => {
             writer.put(format!("LightSource \"infinite\" {}", rgb("L", *radiance)));
         }
-        Light::Sky { panorama: Some(_), .. } => writer.refuse(None, "is not told of a sky's picture", None),
+        Light::Sky { panorama: Some(_), .. } => {
+            let what = "takes pictures of the sky only in another projection, an octahedron's";
+            writer.refuse(None, what, Some("export for Mitsuba, which takes longitude and latitude"));
+        }
     }
 }
 
@@ -143,7 +149,7 @@ fn material(writer: &mut Writer, primitive: &Primitive, around: f64) -> Option<(
             format!("Material \"diffuse\" {}", rgb("reflectance", Rgb::ZERO))
         }
         Material::Emitter { pattern: Some(_), .. } => {
-            writer.refuse(origin, "is not told of textures", None);
+            writer.refuse(origin, TEXTURES, None);
             return None;
         }
     };
@@ -182,13 +188,7 @@ fn shape(writer: &mut Writer, primitive: &Primitive) {
                 "Shape \"trianglemesh\" \"point3 P\" [{corners}] \"integer indices\" [{SIDES}]"
             ));
         }
-        Shape::Mesh(instance) => {
-            if !instance.smooth
-                || writer.nearly(origin, "is given no smooth normals", "meshes have flat triangles")
-            {
-                mesh(writer, &triangles::of(&primitive.shape, 0).unwrap_or_default());
-            }
-        }
+        Shape::Mesh(_) => mesh(writer, &triangles::of(&primitive.shape, 0).unwrap_or_default()),
         Shape::Quadric(quadric) => self::quadric(writer, primitive, quadric),
     }
 }
@@ -228,7 +228,11 @@ fn mesh(writer: &mut Writer, triangles: &Triangles) {
     let corners = numbers(triangles.corners.iter().flat_map(|p| p.to_array()), " ");
     let indices: Vec<String> = triangles.indices.iter().flatten().map(usize::to_string).collect();
     let indices = indices.join(" ");
-    writer.put(format!("Shape \"trianglemesh\" \"point3 P\" [{corners}] \"integer indices\" [{indices}]"));
+    let normals = numbers(triangles.normals.iter().flat_map(|n| n.to_array()), " ");
+    let normals = if normals.is_empty() { normals } else { format!(" \"normal N\" [{normals}]") };
+    writer.put(format!(
+        "Shape \"trianglemesh\" \"point3 P\" [{corners}]{normals} \"integer indices\" [{indices}]"
+    ));
 }
 
 /// Shapes of revolution stand about z there, about y here; a cyclic exchange of axes keeps the hand.
@@ -241,7 +245,7 @@ fn plain(writer: &mut Writer, origin: Option<OriginId>, paint: Paint) -> Option<
     match paint {
         Paint::Plain(color) => Some(color),
         Paint::Texture(_) => {
-            writer.refuse(origin, "is not told of textures", None);
+            writer.refuse(origin, TEXTURES, None);
             None
         }
     }

@@ -15,6 +15,10 @@ use crate::scene::{Light, Material, OriginId, Paint, Primitive, Projection, Shap
 /// The distance up to which light does not fall off, in sizes of the scene.
 const NEAR: f64 = 1e-6;
 
+/// Why a texture is not written.
+const TEXTURES: &str =
+    "takes points on the border of two cells for the other one, and lays pictures otherwise";
+
 pub(super) fn write(writer: &mut Writer) {
     let scene = writer.scene;
     let [width, height] = scene.trace.size;
@@ -80,7 +84,9 @@ fn lamp(writer: &mut Writer, light: &Light) {
                 writer.put(format!("background {{ {} }}", rgb(*radiance)));
             }
         }
-        Light::Sky { panorama: Some(_), .. } => writer.refuse(None, "is not told of a sky's picture", None),
+        Light::Sky { panorama: Some(_), .. } => {
+            writer.refuse(None, "has no light from the picture of a sky", None);
+        }
     }
 }
 
@@ -94,21 +100,19 @@ fn surface(writer: &mut Writer, primitive: &Primitive) {
         Shape::Disk(placed) => format!("disc {{ <0, 0, 0>, y, 1 {}", matrix(placed.world_from_object)),
         Shape::Box(placed) => format!("box {{ <-1, -1, -1>, <1, 1, 1> {}", matrix(placed.world_from_object)),
         Shape::Quadric(quadric) => self::quadric(quadric),
-        Shape::Mesh(instance) => {
-            let how = "meshes have flat triangles";
-            if instance.smooth && !writer.nearly(Some(primitive.origin), "is given no smooth normals", how) {
-                return;
-            }
-            mesh(&triangles::of(&primitive.shape, 0).unwrap_or_default())
-        }
+        Shape::Mesh(_) => mesh(&triangles::of(&primitive.shape, 0).unwrap_or_default()),
     };
     writer.put(format!("{text} {look} }}"));
 }
 
 fn mesh(triangles: &Triangles) -> String {
-    let corner = |i: &usize| vector(triangles.corners[*i]);
+    let corner = |i: &usize| match triangles.normals.get(*i) {
+        Some(normal) => format!("{}, {}", vector(triangles.corners[*i]), vector(*normal)),
+        None => vector(triangles.corners[*i]),
+    };
+    let word = if triangles.normals.is_empty() { "triangle" } else { "smooth_triangle" };
     let triangle =
-        |corners: &[usize; 3]| format!("triangle {{ {} }}", corners.each_ref().map(corner).join(", "));
+        |corners: &[usize; 3]| format!("{word} {{ {} }}", corners.each_ref().map(corner).join(", "));
     let all: Vec<String> = triangles.indices.iter().map(triangle).collect();
     format!("mesh {{ {}", all.join(" "))
 }
@@ -184,7 +188,7 @@ fn material(writer: &mut Writer, primitive: &Primitive) -> Option<String> {
             format!("pigment {{ {} }} finish {{ emission 1 }} no_shadow", rgb(*radiance))
         }
         Material::Emitter { pattern: Some(_), .. } => {
-            writer.refuse(origin, "is not told of textures", None);
+            writer.refuse(origin, TEXTURES, None);
             return None;
         }
     })
@@ -194,7 +198,7 @@ fn plain(writer: &mut Writer, origin: Option<OriginId>, paint: Paint) -> Option<
     match paint {
         Paint::Plain(color) => Some(color),
         Paint::Texture(_) => {
-            writer.refuse(origin, "is not told of textures", None);
+            writer.refuse(origin, TEXTURES, None);
             None
         }
     }

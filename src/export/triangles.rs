@@ -8,6 +8,8 @@ use crate::scene::shape::{Instance, Quadric};
 #[derive(Default)]
 pub(super) struct Triangles {
     pub(super) corners: Vec<DVec3>,
+    /// Unit normals, one a corner, or none at all of what is flat.
+    pub(super) normals: Vec<DVec3>,
     pub(super) indices: Vec<[usize; 3]>,
 }
 
@@ -37,7 +39,11 @@ impl Triangles {
         let map = instance.placed.world_from_object;
         for i in 0..instance.mesh.len() as u32 {
             self.indices.push([3 * i as usize, 3 * i as usize + 1, 3 * i as usize + 2]);
-            self.corners.extend(instance.corners(i));
+            let corners = instance.corners(i);
+            if instance.smooth {
+                self.normals.extend(instance.mesh.normals(i).map(|normal| smooth(instance, corners, normal)));
+            }
+            self.corners.extend(corners);
         }
         self.turn_out(map.matrix3.determinant());
     }
@@ -51,15 +57,18 @@ impl Triangles {
 
     /// As a PLY file in text.
     pub(super) fn ply(&self) -> String {
-        let Triangles { corners, indices } = self;
+        let Triangles { corners, normals, indices } = self;
         let mut text = format!("ply\nformat ascii 1.0\nelement vertex {}\n", corners.len());
-        for axis in ["x", "y", "z"] {
+        let axes = ["x", "y", "z", "nx", "ny", "nz"];
+        for axis in &axes[..if normals.is_empty() { 3 } else { 6 }] {
             text += &format!("property float {axis}\n");
         }
         text +=
             &format!("element face {}\nproperty list uchar int vertex_indices\nend_header\n", indices.len());
-        for corner in corners {
-            text += &(super::numbers(corner.to_array(), " ") + "\n");
+        for (i, corner) in corners.iter().enumerate() {
+            let normal = normals.get(i).map(DVec3::to_array);
+            let values = corner.to_array().into_iter().chain(normal.into_iter().flatten());
+            text += &(super::numbers(values, " ") + "\n");
         }
         for [a, b, c] in indices {
             text += &format!("3 {a} {b} {c}\n");
@@ -98,4 +107,15 @@ impl Triangles {
         let point = |i| quadric.world_from_object.transform_point3(quadric.side_point(y, angle(i)));
         self.corners.extend((0..steps).map(point));
     }
+}
+
+/// The normal in the world that a corner is shaded by: where neighbours have no common one, the triangle's own.
+fn smooth(instance: &Instance, corners: [DVec3; 3], normal: DVec3) -> DVec3 {
+    if normal != DVec3::ZERO {
+        return instance.placed.normal(normal);
+    }
+    let [a, b, c] = corners;
+    let mirrored = instance.placed.world_from_object.matrix3.determinant() < 0.0;
+    let cross = if mirrored { (c - a).cross(b - a) } else { (b - a).cross(c - a) };
+    cross.normalize_or_zero()
 }

@@ -6,7 +6,7 @@ use crate::asset::Mesh;
 use crate::asset::mesh::MOST_TRIANGLES;
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Thing, Things};
-use crate::files::{FilePath, Files};
+use crate::files::{Contents, FilePath, Files};
 use crate::math::{DAffine3, DVec3};
 use crate::scene::Shape;
 use crate::scene::shape::Instance;
@@ -38,6 +38,15 @@ impl<'f> Meshes<'f> {
     /// None yet. The paths in `sources` are relative to each source's own.
     pub fn new(files: &'f dyn Files, sources: &'f Sources) -> Meshes<'f> {
         Meshes { files, sources, read: RefCell::default() }
+    }
+
+    /// Says where they were read.
+    pub(super) fn name(&self, contents: &mut Contents) {
+        for (path, found) in &self.read.borrow().files {
+            if let Ok(mesh) = found {
+                contents.add(mesh.hash(), path);
+            }
+        }
     }
 
     /// Lowers a mesh.

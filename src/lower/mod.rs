@@ -12,9 +12,9 @@ mod texture;
 use crate::color::Rgb;
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Aim, Reach, Thing, ThingId, Things};
-use crate::files::Files;
+use crate::files::{Contents, Files};
 use crate::math::{DAffine3, PI, sin};
-use crate::scene::shape::Bounds;
+use crate::scene::shape::{Bounds, Placed};
 use crate::scene::{
     Develop, FrameId, Light, Material, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace,
 };
@@ -58,6 +58,8 @@ pub struct Lowered {
     pub places: Places,
     /// Where the rest of the scene stands.
     pub marks: Marks,
+    /// Where its pictures and meshes were read.
+    pub contents: Contents,
 }
 
 /// Where those parts of a scene came from that are no primitives. What was chosen for the user has no place.
@@ -116,6 +118,8 @@ pub fn lower(
     lowering.say_defaults();
     if let (Some(camera), Some(size)) = (camera, size) {
         let (trace, tonemap) = lowering.trace(&blocks, size);
+        lowering.textures.name(&mut lowering.out.contents);
+        meshes.name(&mut lowering.out.contents);
         let (textures, images) = lowering.textures.finish();
         lowering.out.scene = Some(Scene {
             primitives: lowering.primitives,
@@ -174,7 +178,7 @@ struct Lowering<'a> {
     materials: Materials,
     textures: Textures<'a>,
     meshes: &'a Meshes<'a>,
-    frames: Vec<DAffine3>,
+    frames: Vec<Placed>,
     lights: Vec<Light>,
     /// By thing.
     extents: Vec<Extent>,
@@ -304,10 +308,15 @@ impl<'a> Lowering<'a> {
                 material::bare(self.things)
             }
         };
-        let frame = material.texture().map(|_| {
-            self.frames.push(thing.world_from_object.inverse());
-            FrameId(self.frames.len() as u32 - 1)
-        });
+        let mut frame = None;
+        if material.texture().is_some() {
+            let world_from_grain = thing.world_from_grain.unwrap_or(thing.world_from_object);
+            match shape::placed(world_from_grain, thing.made.span) {
+                Ok(placed) => self.frames.push(placed),
+                Err(diagnostic) => return self.report(self.used_at(thing, *diagnostic)),
+            }
+            frame = Some(FrameId(self.frames.len() as u32 - 1));
+        }
         self.add_surface(shape, material, frame, thing.origin);
     }
 

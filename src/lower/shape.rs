@@ -134,7 +134,8 @@ fn quadric(
 
 pub(super) fn placed(map: DAffine3, span: Span) -> Result<Placed, Box<Diagnostic>> {
     // Zeros lose their sign, which would change the scene's hash and nothing else.
-    let world_from_object = DAffine3 { matrix3: map.matrix3 + DMat3::ZERO, ..map };
+    let translation = map.translation + DVec3::ZERO;
+    let world_from_object = DAffine3 { matrix3: map.matrix3 + DMat3::ZERO, translation };
     let object_from_world = invert(world_from_object).ok_or_else(|| Box::new(errors::flattened(span)))?;
     Ok(Placed { world_from_object, object_from_world })
 }

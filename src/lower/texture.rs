@@ -4,7 +4,7 @@ use super::errors;
 use crate::asset::Image;
 use crate::diagnostic::Diagnostic;
 use crate::eval::{self, Given, Pattern, Read};
-use crate::files::{FilePath, Files};
+use crate::files::{Contents, FilePath, Files};
 use crate::math::DVec2;
 use crate::scene::{ImageId, Paint, Texture, TextureId};
 use crate::schema;
@@ -40,6 +40,15 @@ impl<'f> Textures<'f> {
             known: BTreeMap::new(),
             images: vec![],
             read: BTreeMap::new(),
+        }
+    }
+
+    /// Says where the pictures were read.
+    pub(super) fn name(&self, contents: &mut Contents) {
+        for (path, found) in &self.read {
+            if let Ok(image) = found {
+                contents.add(self.images[image.0 as usize].hash(), path);
+            }
         }
     }
 

@@ -11,6 +11,8 @@ const MITSUBA: &[(&str, &str, &[&str])] = &[
     ("balls", BALLS, &["--approximate"]),
     ("lens", LENS, &[]),
     ("parallel", PARALLEL, &["--approximate"]),
+    ("dusk", DUSK, &[]),
+    ("knot", KNOT, &["--approximate"]),
     ("towers", TOWERS, &["--approximate", "--tessellate", "96"]),
 ];
 
@@ -67,6 +69,27 @@ camera { from: (0, 3, 8)m, look: (0, 0.8, 0)m, exposure: 0 }
 render { size: (160, 120), samples: 256, filter: box }
 ";
 
+const DUSK: &str = "\
+sky { image: \"dusk.hdr\", turn: -20deg, radiance: 0.8W/m2 }
+box { at: (0, -0.5, 0)m, size: (9, 1, 9)m, material: diffuse {} }
+sphere { at: (-0.9, 0.7, 0)m, radius: 70cm, material: mirror {} }
+sphere { at: (0.9, 0.7, 0)m, radius: 70cm, material: diffuse {} }
+camera { from: (0, 1, 5)m, look: (0, 0.9, 0)m, fov: 60deg, exposure: 0 }
+render { size: (160, 120), samples: 256, filter: box }
+";
+
+const KNOT: &str = "\
+mesh { file: \"knot.ply\", unit: 50cm, at: (0, 1.6, 0)m, place: turn(y: 20deg) |> scale(1, 1.2, -1), material: diffuse { color: rgb(0.8, 0.3, 0.2) } }
+plane { material: diffuse { color: rgb(0.5, 0.6, 0.7) } }
+light { at: (2, 5, 4)m, power: 500W }
+sky { radiance: 0.3W/m2 }
+camera { from: (0, 2.5, 7)m, look: (0, 1.4, 0)m, exposure: 0 }
+render { size: (160, 120), samples: 256, filter: box }
+";
+
+/// Files that the scenes name, among the cases of pictures.
+const FILES: &[&str] = &["dusk.hdr", "knot.ply"];
+
 const DIRECT: &str = "\
 plane { material: diffuse { color: rgb(0.5, 0.6, 0.7) } }
 hyperboloid { at: (-1.5, 1.01, 0)m, axes: (0.5, 0.8, 0.5)m, sheets: 1, height: 2m, material: diffuse { color: rgb(0.8, 0.5, 0.2) } }
@@ -91,6 +114,10 @@ render { size: (160, 120), samples: 64, filter: box, indirect: false }
 pub fn agreement(place: &Place) -> Outcome {
     let python = mitsuba(place)?;
     let script = place.root.join("xtask/e2e/export.py");
+    for file in FILES {
+        let from = place.root.join("tests/cases/pictures").join(file);
+        fs::copy(&from, place.desk.join(file)).map_err(|error| format!("{}: {error}", from.display()))?;
+    }
     for (name, text, flags) in MITSUBA {
         println!("Mitsuba, {name}:");
         let export = prepare(place, name, text, "xml", flags)?;
