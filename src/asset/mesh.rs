@@ -100,6 +100,12 @@ impl Mesh {
         self.triangles.len()
     }
 
+    /// How many bytes of memory it takes.
+    pub fn bytes(&self) -> usize {
+        let vectors = size_of_val(&self.positions[..]) + size_of_val(&self.normals[..]);
+        vectors + size_of_val(&self.uvs[..]) + size_of_val(&self.triangles[..])
+    }
+
     /// Whether it has no triangle, which never is.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()

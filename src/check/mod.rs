@@ -50,7 +50,6 @@ pub fn check(
         let main = index + 1 == imported.files.len();
         let ids = file.imports.iter().map(|(statement, file)| (*statement, FileId(*file as u32)));
         checker.imports = ids.collect();
-        checker.source = file.source;
         let part = checker.file(&file.tree, main);
         checker.program.files.push(program::File { source: file.source, part });
         if main {
@@ -73,8 +72,6 @@ struct Checker<'a> {
     files: &'a dyn Files,
     sources: &'a Sources,
     settings: &'a [Setting],
-    /// The file that is being checked.
-    source: crate::span::SourceId,
     /// What its import statements mean.
     imports: BTreeMap<Span, FileId>,
     /// Innermost last.
@@ -105,7 +102,6 @@ impl<'a> Checker<'a> {
             files,
             sources,
             settings,
-            source: crate::span::SourceId(0),
             imports: BTreeMap::new(),
             scopes: vec![],
             frames: vec![],

@@ -279,6 +279,8 @@ impl<'t> Builder<'t> {
         // Whether a complaint about the last entry, or about its value, explains what follows on its line.
         let (mut explained, mut explained_value) = (false, false);
         let mut muted = None;
+        // Where the last entry ends, if nothing of it was understood: more of the kind on its line is one slip.
+        let mut lost = None;
         for pair in pairs {
             match pair.as_rule() {
                 Rule::semicolon => self.semicolon(&pair),
@@ -289,10 +291,16 @@ impl<'t> Builder<'t> {
                 Rule::stray => self.stray(&pair),
                 Rule::EOI => {}
                 _ => {
+                    let known = self.sink.borrow().len();
+                    let start = pair.as_span().end() - pair.as_str().trim_ascii_start().len();
+                    let end = pair.as_span().start() + pair.as_str().trim_ascii_end().len();
                     let (entry, depth) = self.entry(pair, top);
-                    if let Some(length) = muted.take() {
+                    let nameless = matches!(entry, Entry::Broken(Broken { name: None, .. }));
+                    let again = lost.is_some_and(|lost| !self.text[lost..start].contains('\n'));
+                    if let Some(length) = muted.take().or((nameless && again).then_some(known)) {
                         self.sink.borrow_mut().truncate(length);
                     }
+                    lost = nameless.then_some(end);
                     explained = matches!(entry, Entry::Broken(_));
                     explained_value = ends_invalid(&entry);
                     deepest = deepest.max(depth);

@@ -132,6 +132,7 @@ pub(super) fn unexpected_entry(token: &str, span: Span, top: bool) -> Diagnostic
     };
     match token {
         "#" => diagnostic.help("a comment begins with `//`").fix(span, "//"),
+        "<" if !top => diagnostic.help("every value stands behind its field's name: `at: (0, 1, 0)m`"),
         "-" => {
             diagnostic.help("a line goes on in the next one behind an operator: end the line above with `-`")
         }

@@ -98,8 +98,8 @@ pub struct Check {
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
 
-    /// Makes every mend that is certain, writes the file anew and tells what was done; what is left is reported. A
-    /// scene from standard input goes to standard output.
+    /// Makes every mend that is certain, writes the file anew and tells what was done; what is left is reported. Only
+    /// the files that are named are mended, not those they import. A scene from standard input goes to standard output.
     #[arg(long)]
     pub fix: bool,
 
