@@ -231,6 +231,18 @@ impl Checker<'_> {
             let kind = ExprKind::Make(Box::new(part));
             make.fields.push((FieldPlace::Index(*index), Expr { kind, span: construct.span }));
         }
+        // What an entry without a name was to be is not known: it may be any field that must be given.
+        let nameless = entries.iter().find_map(|entry| match entry {
+            Entry::Broken(ast::Broken { name: None, span }) => Some(*span),
+            _ => None,
+        });
+        if let (Kind::BuiltIn(kind), Some(span)) = (kind, nameless) {
+            for (index, field) in kind.fields().enumerate() {
+                if field.default == Preset::Required && places[index].is_none() {
+                    make.fields.push((FieldPlace::Index(index), Expr::invalid(span)));
+                }
+            }
+        }
         let mut own = FieldSet::default();
         for (place, _) in &make.fields {
             match (kind, place) {
