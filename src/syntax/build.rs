@@ -166,6 +166,24 @@ fn ends_invalid(entry: &Entry) -> bool {
     }
 }
 
+/// Makes the value invalid with which an entry ends, because more stands behind it: what it was to be is not known.
+/// What stands in a body of its own is looked at all the same.
+fn spoil(entry: &mut Entry) {
+    let value = match entry {
+        Entry::Field(field) => &mut field.value,
+        Entry::Broken(_) => return,
+        Entry::Statement(statement) => match &mut statement.kind {
+            StatementKind::Definition { value, .. } | StatementKind::Function { value, .. } => value,
+            StatementKind::Param { default, range, .. } => range.as_mut().unwrap_or(default),
+            StatementKind::Assert { condition, message } => message.as_mut().unwrap_or(condition),
+            _ => return,
+        },
+    };
+    if !matches!(value.kind, ExprKind::Construct(_)) {
+        value.kind = ExprKind::Invalid;
+    }
+}
+
 fn is_statement(rule: Rule) -> bool {
     use Rule::*;
     matches!(rule, param | part | import | function | repetition | choice | assertion | unfinished)
@@ -223,6 +241,11 @@ impl<'t> Builder<'t> {
     /// The text before an offset, without white space at its end.
     pub(super) fn before(&self, offset: usize) -> &'t str {
         self.text[..offset].trim_ascii_end()
+    }
+
+    /// Where the item begins in its file.
+    pub(super) fn base(&self) -> usize {
+        self.base
     }
 
     /// The text behind an offset.
@@ -287,7 +310,10 @@ impl<'t> Builder<'t> {
                 Rule::crowded if explained => muted = Some(self.sink.borrow().len()),
                 Rule::crowded => self.crowded(&pair),
                 Rule::extra if explained || explained_value => {}
-                Rule::extra => self.unexpected(&pair, errors::unexpected_extra),
+                Rule::extra => {
+                    self.unexpected(&pair, errors::unexpected_extra);
+                    entries.last_mut().into_iter().for_each(spoil);
+                }
                 Rule::stray => self.stray(&pair),
                 Rule::EOI => {}
                 _ => {
@@ -487,6 +513,9 @@ impl<'t> Builder<'t> {
             let place = self.span(&sign);
             let edit = self.at(name.span.range().end - self.base, sign.as_span().end());
             self.report(errors::colon_in_definition(keyword.as_str(), &name.text, place, edit));
+        } else if let Some(ty) = sign.clone().into_inner().next() {
+            let edit = self.at(name.span.range().end - self.base, ty.as_span().end());
+            self.report(errors::type_in_definition(keyword.as_str(), &name.text, self.span(&ty), edit));
         }
         if is_reserved(&name.text) {
             self.report(errors::reserved(&name.text, name.span));
