@@ -75,7 +75,9 @@ impl FilePath {
         let ours: Vec<&str> = self.0.split('/').collect();
         let mut around: Vec<&str> = other.0.split('/').collect();
         around.pop();
-        let shared = ours.iter().zip(&around).take_while(|(a, b)| a == b).count();
+        // The last name is the file's own, also where a folder is called the same.
+        let folders = &ours[..ours.len() - 1];
+        let shared = folders.iter().zip(&around).take_while(|(a, b)| a == b).count();
         // What could be taken for the name of a drive is not.
         let here =
             if shared == around.len() && ours[shared].as_bytes().get(1) == Some(&b':') { "./" } else { "" };
