@@ -69,6 +69,8 @@ pub struct Made {
     pub(super) values: SmallVec<[Value; 2]>,
     /// What is the same for all that is made here.
     pub(super) written: Arc<Written>,
+    /// Of which row, if it was made of rows.
+    pub(super) row: u32,
     /// What it was made from.
     pub(super) base: Option<Rc<Made>>,
     /// What a group holds.
@@ -140,8 +142,8 @@ pub struct Given {
 impl Made {
     /// A thing of a kind with nothing given.
     pub fn new(kind: KindId, span: Span) -> Made {
-        let written = Arc::new(Written { name: None, span, fields: [].into() });
-        Made { kind, span, mask: 0, values: SmallVec::new(), written, base: None, group: None }
+        let written = Arc::new(Written { name: None, span, fields: [].into(), rows: None });
+        Made { kind, span, mask: 0, values: SmallVec::new(), written, row: 0, base: None, group: None }
     }
 
     /// The field at an index of [`KindId::fields`] as given here or by the prototype.
@@ -150,7 +152,7 @@ impl Made {
         loop {
             if made.mask >> index & 1 == 1 {
                 let rank = (made.mask & ((1 << index) - 1)).count_ones() as usize;
-                return Some((&made.values[rank], made.written.fields[rank]));
+                return Some((&made.values[rank], made.written.place(made.row, made.written.fields[rank])));
             }
             made = made.base.as_deref()?;
         }
