@@ -83,22 +83,19 @@ impl Evaluator<'_> {
 
     /// Things that differ in their literals only.
     fn rows(&mut self, rows: &Arc<Rows>, makes: &[Option<Make>], apart: &BTreeMap<usize, Statement>) {
-        let outer = self.row.replace((rows.clone(), 0));
+        let outer = self.row.take();
         for row in 0..rows.len() {
             if self.halted {
                 break;
             }
-            self.row = Some((rows.clone(), row as u32));
             let shape = rows.shape(row);
-            match &makes[shape] {
-                Some(make) => {
-                    let span = rows.place(row, rows.shapes()[shape].statement().span);
-                    self.draw(make, span, false);
-                }
-                None => {
-                    self.row = None;
-                    self.statement(&apart[&row], false);
-                }
+            if let Some(make) = &makes[shape] {
+                self.row = Some((rows.clone(), row as u32));
+                let span = self.here(rows.shapes()[shape].statement().span);
+                self.draw(make, span, false);
+                self.row = None;
+            } else if let Some(statement) = apart.get(&row) {
+                self.statement(statement, false);
             }
         }
         self.row = outer;

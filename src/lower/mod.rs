@@ -16,7 +16,7 @@ use crate::files::Files;
 use crate::math::{DAffine3, PI, sin};
 use crate::scene::shape::Bounds;
 use crate::scene::{
-    Develop, FrameId, Light, Material, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace,
+    Develop, FrameId, Light, Material, MaterialId, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace,
 };
 use crate::schema::{self, Category, DEFAULT_SAMPLES, KindId, light, render, sun};
 use crate::source::Sources;
@@ -161,8 +161,8 @@ pub fn measure(things: &Things, thing: &Thing, meshes: &Meshes) -> Result<Reach,
 
 /// The blocks that are not left out, each with its index among the things.
 fn written_blocks(things: &Things) -> Vec<(usize, Thing)> {
-    let block = |thing: &Thing| thing.made.kind.get().category == Category::Block && !thing.hidden;
-    things.iter().enumerate().filter(|(_, thing)| block(thing)).collect()
+    let blocks = things.of(|kind| kind.get().category == Category::Block);
+    blocks.filter(|(_, thing)| !thing.hidden).collect()
 }
 
 struct Lowering<'a> {
@@ -294,25 +294,34 @@ impl<'a> Lowering<'a> {
         };
         let extent = shape.bounds().map_or(Extent::Endless, Extent::Box);
         self.extents[index] = extent;
-        let material = match &thing.material {
-            Some(given) => match material::lower(&mut self.textures, self.things, given, &shape) {
-                Ok(material) => material,
-                Err(diagnostic) => return self.report(self.used_at(thing, *diagnostic)),
-            },
-            None => {
-                self.bare += 1;
-                material::bare(self.things)
-            }
+        let material = match self.material(thing, &shape) {
+            Ok(material) => material,
+            Err(diagnostic) => return self.report(self.used_at(thing, *diagnostic)),
         };
-        let frame = material.texture().map(|_| {
+        let frame = self.materials.get(material).texture().map(|_| {
             self.frames.push(thing.world_from_object.inverse());
             FrameId(self.frames.len() as u32 - 1)
         });
         self.add_surface(shape, material, frame, thing.origin);
     }
 
-    fn add_surface(&mut self, shape: Shape, material: Material, frame: Option<FrameId>, origin: OriginId) {
-        let material = self.materials.add(material);
+    /// What a thing is made of, lowered once where things share it.
+    fn material(&mut self, thing: &Thing, shape: &Shape) -> Result<MaterialId, Box<Diagnostic>> {
+        let given = thing.material.as_ref();
+        self.bare += usize::from(given.is_none());
+        if let Some(known) = self.materials.known(given) {
+            return Ok(known);
+        }
+        let material = match given {
+            Some(given) => material::lower(&mut self.textures, self.things, given, shape)?,
+            None => material::bare(self.things),
+        };
+        let id = self.materials.add(material);
+        self.materials.remember(given, id);
+        Ok(id)
+    }
+
+    fn add_surface(&mut self, shape: Shape, material: MaterialId, frame: Option<FrameId>, origin: OriginId) {
         self.primitives.push(Primitive { shape, material, frame, origin });
     }
 
@@ -345,7 +354,8 @@ impl<'a> Lowering<'a> {
                 if !radiance.is_finite() {
                     return self.report(self.used_at(thing, errors::glows_beyond(made.span)));
                 }
-                self.add_surface(shape, Material::Emitter { radiance, pattern: None }, None, thing.origin);
+                let material = self.materials.add(Material::Emitter { radiance, pattern: None });
+                self.add_surface(shape, material, None, thing.origin);
             }
             Err(diagnostic) => self.report(self.used_at(thing, *diagnostic)),
         }
