@@ -57,7 +57,7 @@ struct Importer<'a> {
 
 impl Importer<'_> {
     fn file(&mut self, source: SourceId, path: FilePath) -> usize {
-        let (tree, found) = syntax::parse(source, &self.sources.get(source).text);
+        let (tree, found) = syntax::parse_rows(source, &self.sources.get(source).text);
         self.out.diagnostics.extend(found);
         self.open.push(path.clone());
         let mut imports = BTreeMap::new();

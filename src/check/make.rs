@@ -54,6 +54,7 @@ impl Checker<'_> {
             name: name.map(|name| name.text.clone()),
             span: construct.span,
             fields: make.fields.iter().map(|(_, value)| value.span).collect(),
+            rows: None,
         });
         (Make { base, fields: make.fields, block, inside, written }, ty)
     }

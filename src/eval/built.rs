@@ -166,9 +166,9 @@ pub(super) fn placement(made: &Made) -> DAffine3 {
     if !matches!(made.kind.get().category, Category::Shape | Category::Group) {
         return DAffine3::IDENTITY;
     }
-    let place = made.given(placed::PLACE).map_or(DAffine3::IDENTITY, |(place, _)| place);
-    match made.given(placed::AT) {
-        Some((at, _)) => DAffine3::from_translation(at) * place,
+    let place = made.read(placed::PLACE).unwrap_or(DAffine3::IDENTITY);
+    match made.read(placed::AT) {
+        Some(at) => DAffine3::from_translation(at) * place,
         None => place,
     }
 }

@@ -46,7 +46,8 @@ impl Evaluator<'_> {
             }
             Value::Part(part) => {
                 let outer = self.begin_buffer();
-                let written = crate::check::Written { name: None, span: part.span, fields: [].into() };
+                let written =
+                    crate::check::Written { name: None, span: part.span, fields: [].into(), rows: None };
                 self.draw_part_value(part, std::sync::Arc::new(written), &[span], false);
                 self.bounds_of_buffer(outer, span)
             }

@@ -93,6 +93,12 @@ impl Things {
         (0..self.len()).map(|index| self.get(index))
     }
 
+    /// Those of the kinds that are wanted, each with its index.
+    pub fn of(&self, wanted: impl Fn(KindId) -> bool) -> impl Iterator<Item = (usize, Thing)> {
+        let stored = self.built.things.iter().enumerate();
+        stored.filter(move |(_, stored)| wanted(stored.made.kind)).map(|(index, _)| (index, self.get(index)))
+    }
+
     /// The thing at an index.
     pub fn get(&self, index: usize) -> Thing {
         let stored = &self.built.things[index];
@@ -121,8 +127,8 @@ impl Things {
 
     /// A field of a thing: as given, or else its default.
     pub fn read<T: Read>(&self, made: &Made, key: Key<T>) -> T::Out {
-        match made.given(key) {
-            Some((value, _)) => value,
+        match made.read(key) {
+            Some(value) => value,
             None => self.defaults.read(made.kind, key),
         }
     }

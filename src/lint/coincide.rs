@@ -15,6 +15,7 @@ use crate::math::{DMat3, DVec3, ln};
 use crate::scene::boxes::Boxes;
 use crate::scene::shape::{Bounds, Form};
 use crate::scene::{Primitive, Shape};
+use rayon::prelude::*;
 use std::ops::ControlFlow;
 
 /// Cells in a unit of the rounded canonical forms.
@@ -38,9 +39,9 @@ pub(super) fn look(lint: &mut Lint) {
 
 /// Each curved surface that equals an earlier one, with that one.
 fn curved(primitives: &[Primitive]) -> Vec<(u32, u32)> {
-    let keys = primitives.iter().zip(0u32..).filter_map(|(p, i)| Some((hash(&form(&p.shape)?), i)));
-    let mut keys: Vec<(u64, u32)> = keys.collect();
-    keys.sort_unstable();
+    let key = |(i, p): (usize, &Primitive)| Some((hash(&form(&p.shape)?), i as u32));
+    let mut keys: Vec<(u64, u32)> = primitives.par_iter().enumerate().filter_map(key).collect();
+    keys.par_sort_unstable();
     let mut found = vec![];
     for same in keys.chunk_by(|(a, _), (b, _)| a == b).filter(|same| same.len() > 1) {
         let first = same[0].1;
@@ -56,8 +57,10 @@ type Canonical = [i64; 17];
 
 fn form(shape: &Shape) -> Option<Canonical> {
     match shape {
+        // The same however it is turned.
         Shape::Sphere { center, radius } => {
-            Some(canonical(0, *center, DMat3::from_diagonal(DVec3::splat(*radius))))
+            let DVec3 { x, y, z } = *center / *radius;
+            Some(rounded(0, &[ln(*radius), x, y, z]))
         }
         Shape::Plane { .. } | Shape::Disk(_) | Shape::Box(_) | Shape::Mesh(_) => None,
         Shape::Quadric(quadric) => {
@@ -99,6 +102,10 @@ fn canonical(kind: i64, origin: DVec3, m: DMat3) -> Canonical {
         y.y * y.z,
         y.z * y.z,
     ];
+    rounded(kind, &numbers)
+}
+
+fn rounded(kind: i64, numbers: &[f64]) -> Canonical {
     let mut canonical = [kind; 17];
     canonical[1..].iter_mut().zip(numbers).for_each(|(cell, number)| *cell = (CELLS * number).round() as i64);
     canonical

@@ -32,7 +32,8 @@ impl Lowering<'_> {
                 if !radiance.is_finite() {
                     return self.report(self.used_at(thing, errors::glows_beyond(made.span)));
                 }
-                self.add_surface(shape, Material::Emitter { radiance, pattern: None }, None, thing.origin);
+                let material = self.materials.add(Material::Emitter { radiance, pattern: None });
+                self.add_surface(shape, material, None, thing.origin);
             }
             Err(diagnostic) => self.report(self.used_at(thing, *diagnostic)),
         }

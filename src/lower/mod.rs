@@ -17,7 +17,7 @@ use crate::files::{Contents, Files};
 use crate::math::{DAffine3, PI, sin};
 use crate::scene::shape::{Bounds, Placed};
 use crate::scene::{
-    Develop, FrameId, Light, Material, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace,
+    Develop, FrameId, Light, Material, MaterialId, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace,
 };
 use crate::schema::{self, Category, DEFAULT_SAMPLES, KindId, light, render, sun};
 use crate::source::Sources;
@@ -166,8 +166,8 @@ pub fn measure(things: &Things, thing: &Thing, meshes: &Meshes) -> Result<Reach,
 
 /// The blocks that are not left out, each with its index among the things.
 fn written_blocks(things: &Things) -> Vec<(usize, Thing)> {
-    let block = |thing: &Thing| thing.made.kind.get().category == Category::Block && !thing.hidden;
-    things.iter().enumerate().filter(|(_, thing)| block(thing)).collect()
+    let blocks = things.of(|kind| kind.get().category == Category::Block);
+    blocks.filter(|(_, thing)| !thing.hidden).collect()
 }
 
 struct Lowering<'a> {
@@ -273,18 +273,12 @@ impl<'a> Lowering<'a> {
         };
         let extent = shape.bounds().map_or(Extent::Endless, Extent::Box);
         self.extents[index] = extent;
-        let material = match &thing.material {
-            Some(given) => match material::lower(&mut self.textures, self.things, given, &shape) {
-                Ok(material) => material,
-                Err(diagnostic) => return self.report(self.used_at(thing, *diagnostic)),
-            },
-            None => {
-                self.bare += 1;
-                material::bare(self.things)
-            }
+        let material = match self.material(thing, &shape) {
+            Ok(material) => material,
+            Err(diagnostic) => return self.report(self.used_at(thing, *diagnostic)),
         };
         let mut frame = None;
-        if material.texture().is_some() {
+        if self.materials.get(material).texture().is_some() {
             let world_from_grain = thing.world_from_grain.unwrap_or(thing.world_from_object);
             match shape::placed(world_from_grain, thing.made.span) {
                 Ok(placed) => self.frames.push(placed),
@@ -295,8 +289,23 @@ impl<'a> Lowering<'a> {
         self.add_surface(shape, material, frame, thing.origin);
     }
 
-    fn add_surface(&mut self, shape: Shape, material: Material, frame: Option<FrameId>, origin: OriginId) {
-        let material = self.materials.add(material);
+    /// What a thing is made of, lowered once where things share it.
+    fn material(&mut self, thing: &Thing, shape: &Shape) -> Result<MaterialId, Box<Diagnostic>> {
+        let given = thing.material.as_ref();
+        self.bare += usize::from(given.is_none());
+        if let Some(known) = self.materials.known(given) {
+            return Ok(known);
+        }
+        let material = match given {
+            Some(given) => material::lower(&mut self.textures, self.things, given, shape)?,
+            None => material::bare(self.things),
+        };
+        let id = self.materials.add(material);
+        self.materials.remember(given, id);
+        Ok(id)
+    }
+
+    fn add_surface(&mut self, shape: Shape, material: MaterialId, frame: Option<FrameId>, origin: OriginId) {
         self.primitives.push(Primitive { shape, material, frame, origin });
     }
 

@@ -6,6 +6,7 @@ use super::ast::{
 };
 use super::cut::Item;
 use super::errors::{self, Sink, statements};
+use super::rows::Rows;
 use super::shapes::Shapes;
 use super::{MAX_DEPTH, docs, statement, value};
 use crate::span::{SourceId, Span};
@@ -50,15 +51,23 @@ pub(super) fn items(source: Source, items: &[Item]) -> (Vec<Entry>, Sink) {
     let mut entries = Vec::with_capacity(items.len());
     let mut sink = Sink::new();
     let mut shapes = Shapes::default();
+    let mut rows = Rows::default();
     for item in items {
         // An item with comments inside has places that its text alone does not tell.
         let plain = matches!(item.text, Cow::Borrowed(_)) && !item.skipped && item.depth < DEEP;
         let start = item.start as u32;
-        if plain && let Some(mut copies) = shapes.recall(&item.text, start) {
+        if plain && let Some((shape, literals)) = shapes.recall(&item.text) {
+            if shape.is_plain() && !docs::any(&source, item.start) {
+                rows.push(shape, &item.text, start, literals);
+                continue;
+            }
+            let mut copies = shape.copy(&item.text, start, literals);
             copies.iter_mut().for_each(|entry| document(source, entry));
+            close(&mut rows, &mut entries);
             entries.append(&mut copies);
             continue;
         }
+        close(&mut rows, &mut entries);
         let (built, slips) = on_enough_stack(item, || entries_of(source, item));
         if plain && slips.len() == 0 {
             shapes.learn(&built, start);
@@ -66,7 +75,15 @@ pub(super) fn items(source: Source, items: &[Item]) -> (Vec<Entry>, Sink) {
         entries.extend(built);
         sink.append(slips);
     }
+    close(&mut rows, &mut entries);
     (entries, sink)
+}
+
+/// Ends a run of rows.
+fn close(rows: &mut Rows, entries: &mut Vec<Entry>) {
+    if !rows.is_empty() {
+        entries.push(std::mem::take(rows).finish());
+    }
 }
 
 /// Gives a copy of a statement its own doc.
@@ -148,7 +165,7 @@ fn ends_invalid(entry: &Entry) -> bool {
     let invalid = |value: &Expr| matches!(value.kind, ExprKind::Invalid);
     match entry {
         Entry::Field(field) => invalid(&field.value),
-        Entry::Broken(_) => false,
+        Entry::Broken(_) | Entry::Rows(_) => false,
         Entry::Statement(statement) => match &statement.kind {
             StatementKind::Definition { value, .. } | StatementKind::Function { value, .. } => invalid(value),
             StatementKind::Param { default, range, .. } => invalid(range.as_ref().unwrap_or(default)),
@@ -171,7 +188,7 @@ fn ends_invalid(entry: &Entry) -> bool {
 fn spoil(entry: &mut Entry) {
     let value = match entry {
         Entry::Field(field) => &mut field.value,
-        Entry::Broken(_) => return,
+        Entry::Broken(_) | Entry::Rows(_) => return,
         Entry::Statement(statement) => match &mut statement.kind {
             StatementKind::Definition { value, .. } | StatementKind::Function { value, .. } => value,
             StatementKind::Param { default, range, .. } => range.as_mut().unwrap_or(default),
@@ -396,6 +413,8 @@ impl<'t> Builder<'t> {
                     }
                 }
                 Entry::Broken(broken) => broken.span = span,
+                // The grammar knows nothing of them.
+                Entry::Rows(_) => {}
             }
             return self.checked(entry, depth.max(deepest), span);
         }
@@ -501,6 +520,7 @@ impl<'t> Builder<'t> {
                 StatementKind::For { .. } | StatementKind::If { .. } | StatementKind::Assert { .. } => None,
             },
             Entry::Broken(broken) => broken.name,
+            Entry::Rows(_) => None,
         };
         (Entry::Broken(Broken { name, span }), 0)
     }

@@ -26,6 +26,7 @@ impl Unit<'_> {
         match self {
             Unit::Entry(Entry::Field(field)) => start(field.name.span),
             Unit::Entry(Entry::Broken(broken)) => start(broken.span),
+            Unit::Entry(Entry::Rows(rows)) => start(rows.span()),
             Unit::Entry(Entry::Statement(statement)) => {
                 start(statement.prefixes.first().map_or(statement.span, |prefix| prefix.span))
             }
@@ -37,6 +38,7 @@ impl Unit<'_> {
         match self {
             Unit::Entry(Entry::Field(field)) => end(field.value.span),
             Unit::Entry(Entry::Broken(broken)) => end(broken.span),
+            Unit::Entry(Entry::Rows(rows)) => end(rows.span()),
             Unit::Entry(Entry::Statement(statement)) => end(statement.span),
             Unit::Verbatim(range) => range.end,
         }
@@ -195,6 +197,7 @@ impl<'t> Printer<'t> {
             }
             Unit::Entry(Entry::Statement(statement)) => self.statement(statement, out),
             Unit::Entry(Entry::Broken(broken)) => self.verbatim(broken.span.range(), out),
+            Unit::Entry(Entry::Rows(rows)) => self.verbatim(rows.span().range(), out),
             Unit::Verbatim(range) => self.verbatim(range.clone(), out),
         }
     }
