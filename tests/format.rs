@@ -54,7 +54,12 @@ fn examples_are_laid_out() {
     all_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("examples"), &mut paths);
     for path in paths {
         let text = std::fs::read_to_string(&path).unwrap();
-        assert_eq!(format(SOURCE, &text).0, text, "{}: `rtc fmt examples/**/*.rt` lays it out", path.display());
+        assert_eq!(
+            format(SOURCE, &text).0,
+            text,
+            "{}: `rtc fmt examples/**/*.rt` lays it out",
+            path.display()
+        );
     }
 }
 

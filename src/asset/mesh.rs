@@ -53,7 +53,7 @@ impl Mesh {
 
     fn new(raw: Raw) -> Result<Mesh, String> {
         let Raw { positions, normals, uvs, mut triangles } = raw;
-        if positions.iter().any(|p| !(p.abs().max_element() < FARTHEST)) {
+        if positions.iter().any(|p| !p.is_finite() || p.abs().max_element() >= FARTHEST) {
             return Err("has a vertex that is not finite".into());
         }
         if triangles.iter().flatten().any(|&corner| corner as usize >= positions.len()) {
