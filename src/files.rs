@@ -3,6 +3,8 @@
 //! The library reads none by itself. It resolves what is written to a path below the scene's root folder, and asks
 //! whoever called it for the bytes; the caller may keep what was asked for, and so knows what a picture depends on.
 
+use crate::diagnostic::{Code, Diagnostic};
+use crate::span::Span;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
@@ -38,6 +40,32 @@ pub enum FileError {
     TooLarge(usize),
     /// In words, such as `permission denied` or `is a folder`.
     Unreadable(String),
+}
+
+impl FileError {
+    /// What is said of it. `written` is the path as it stands at `span` in a source.
+    pub fn diagnostic(&self, written: &str, span: Span) -> Diagnostic {
+        let (code, message, label) = match self {
+            FileError::Missing => (Code::E0501, format!("there is no file `{written}`"), "not found"),
+            FileError::Outside => {
+                (Code::E0501, format!("`{written}` is not below the scene's root folder"), "outside")
+            }
+            FileError::TooLarge(most) => {
+                (Code::E0406, format!("`{written}` is larger than {} MiB", most >> 20), "too large")
+            }
+            FileError::Unreadable(reason) => {
+                (Code::E0501, format!("`{written}` cannot be read: {reason}"), "not readable")
+            }
+        };
+        let diagnostic = Diagnostic::new(code, message, span).at(label);
+        match self {
+            FileError::Missing => diagnostic.help("a path counts from the folder of the file that names it"),
+            FileError::Outside => {
+                diagnostic.help("`--root FOLDER` says below which folder files may be read")
+            }
+            FileError::TooLarge(_) | FileError::Unreadable(_) => diagnostic,
+        }
+    }
 }
 
 impl FilePath {

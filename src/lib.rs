@@ -110,7 +110,7 @@ const STACK: usize = 256 << 20;
 /// errors, so that one run reports all that is wrong. `files` is what the source may read; what it imports is added
 /// to `sources`, and so is each setting.
 pub fn compile(files: &dyn Files, sources: &mut Sources, main: SourceId, options: &Options) -> Compiled {
-    let imported = import::import(files, sources, main);
+    let imported = import::import(files, sources, main, options.limits.levels);
     let (settings, slips) = check::settings(sources, &options.set);
     let sources = &*sources;
     let work = move || stages(files, sources, main, imported, settings, slips, options);

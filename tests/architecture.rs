@@ -9,7 +9,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ("span", &[]),
     ("source", &["span", "files"]),
     ("diagnostic", &["span"]),
-    ("files", &[]),
+    ("files", &["span", "diagnostic"]),
     ("math", &[]),
     ("color", &["math"]),
     ("units", &["math"]),

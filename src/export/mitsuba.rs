@@ -8,7 +8,7 @@ use super::{TESSELLATE, Writer, media, number, numbers, panorama, triangles};
 use crate::color::Rgb;
 use crate::math::{DAffine3, DMat3, DVec3, PI, atan2};
 use crate::scene::shape::{Form, Placed, Quadric};
-use crate::scene::{Filter, Light, Material, OriginId, Paint, Panorama, Primitive, Projection, Shape};
+use crate::scene::{Filter, Light, Material, OriginId, Panorama, Primitive, Projection, Shape};
 
 /// The size of a plane's stand-in, in sizes of the scene.
 const FAR: f64 = 1e4;
@@ -219,16 +219,16 @@ fn material(writer: &mut Writer, primitive: &Primitive, around: f64) -> Option<S
     let two_sided = |inner: String| format!("<bsdf type=\"twosided\">{inner}</bsdf>");
     Some(match writer.scene.material(primitive) {
         Material::Diffuse { color } => {
-            let color = plain(writer, origin, *color)?;
+            let color = writer.plain(origin, *color, TEXTURES)?;
             two_sided(format!("<bsdf type=\"diffuse\">{}</bsdf>", rgb("reflectance", color)))
         }
         Material::Mirror { color } => {
-            let color = plain(writer, origin, *color)?;
+            let color = writer.plain(origin, *color, TEXTURES)?;
             let none = "<string name=\"material\" value=\"none\"/>";
             two_sided(format!("<bsdf type=\"conductor\">{none}{}</bsdf>", rgb("specular_reflectance", color)))
         }
         Material::Metal { color, alpha } => {
-            let color = plain(writer, origin, *color)?;
+            let color = writer.plain(origin, *color, TEXTURES)?;
             let how = "facets hide and shadow each other independently, and none is quite smooth";
             writer.nearly(origin, "has other metals", how).then_some(())?;
             let fields = [("metallic", 1.0), ("roughness", alpha.sqrt()), ("specular", 0.5)];
@@ -236,7 +236,7 @@ fn material(writer: &mut Writer, primitive: &Primitive, around: f64) -> Option<S
             two_sided(format!("<bsdf type=\"principled\">{}{fields}</bsdf>", rgb("base_color", color)))
         }
         Material::Plastic { color, ior, alpha } => {
-            let color = rgb("diffuse_reflectance", plain(writer, origin, *color)?);
+            let color = rgb("diffuse_reflectance", writer.plain(origin, *color, TEXTURES)?);
             let kind = rough(writer, origin, "plastic", *alpha)?;
             let fields = [float_of("int_ior", *ior), float_of("ext_ior", 1.0)].concat();
             let nonlinear = "<boolean name=\"nonlinear\" value=\"true\"/>";
@@ -285,16 +285,6 @@ fn rough(writer: &mut Writer, origin: Option<OriginId>, kind: &str, alpha: f64) 
     writer.nearly(origin, "has other rough surfaces", how).then_some(())?;
     let ggx = "<string name=\"distribution\" value=\"ggx\"/>";
     Some(format!("type=\"rough{kind}\">{ggx}{}", float_of("alpha", alpha)))
-}
-
-fn plain(writer: &mut Writer, origin: Option<OriginId>, paint: Paint) -> Option<Rgb> {
-    match paint {
-        Paint::Plain(color) => Some(color),
-        Paint::Texture(_) => {
-            writer.refuse(origin, TEXTURES, None);
-            None
-        }
-    }
 }
 
 fn is_right_angled(m: DMat3) -> bool {

@@ -13,8 +13,9 @@ mod panorama;
 mod pov;
 mod triangles;
 
+use crate::color::Rgb;
 use crate::scene::shape::Bounds;
-use crate::scene::{Background, Filter, OriginId, Scene, Target};
+use crate::scene::{Background, Filter, OriginId, Paint, Scene, Target};
 use std::collections::BTreeSet;
 
 /// A renderer to write for.
@@ -138,6 +139,17 @@ impl Writer<'_> {
             self.refuse(origin, what, Some(APPROXIMATE));
         }
         self.options.approximate
+    }
+
+    /// A colour as it is; textures are refused, with what the renderer does in their place.
+    fn plain(&mut self, origin: Option<OriginId>, paint: Paint, textures: &str) -> Option<Rgb> {
+        match paint {
+            Paint::Plain(color) => Some(color),
+            Paint::Texture(_) => {
+                self.refuse(origin, textures, None);
+                None
+            }
+        }
     }
 
     /// Samples a pixel.

@@ -8,7 +8,7 @@ use super::{TESSELLATE, Writer, media, number, numbers, triangles};
 use crate::color::Rgb;
 use crate::math::{DAffine3, DMat3, DVec3, PI};
 use crate::scene::shape::{Form, Quadric};
-use crate::scene::{Filter, Light, Material, OriginId, Paint, Primitive, Projection, Shape};
+use crate::scene::{Filter, Light, Material, Primitive, Projection, Shape};
 
 /// The size of a plane's stand-in, in sizes of the scene.
 const FAR: f64 = 1e4;
@@ -99,23 +99,23 @@ fn material(writer: &mut Writer, primitive: &Primitive, around: f64) -> Option<(
     let origin = Some(primitive.origin);
     let line = match writer.scene.material(primitive) {
         Material::Diffuse { color } => {
-            format!("Material \"diffuse\" {}", rgb("reflectance", plain(writer, origin, *color)?))
+            format!("Material \"diffuse\" {}", rgb("reflectance", writer.plain(origin, *color, TEXTURES)?))
         }
         Material::Mirror { color } => {
-            let color = plain(writer, origin, *color)?;
+            let color = writer.plain(origin, *color, TEXTURES)?;
             writer
                 .nearly(origin, "has no perfect mirror", "it reflects more at grazing angles")
                 .then_some(())?;
             format!("Material \"conductor\" {} \"float roughness\" 0", rgb("reflectance", color))
         }
         Material::Metal { color, alpha } => {
-            let color = plain(writer, origin, *color)?;
+            let color = writer.plain(origin, *color, TEXTURES)?;
             let how = "Fresnel's equations take the place of Schlick's approximation";
             writer.nearly(origin, "has other metals", how).then_some(())?;
             format!("Material \"conductor\" {}{}", rgb("reflectance", color), roughness(*alpha))
         }
         Material::Plastic { color, ior, alpha } => {
-            let color = plain(writer, origin, *color)?;
+            let color = writer.plain(origin, *color, TEXTURES)?;
             let how = "light walks at random between coat and base";
             writer.nearly(origin, "has other plastics", how).then_some(())?;
             let eta = format!(" \"float eta\" {}", number(*ior));
@@ -239,16 +239,6 @@ fn mesh(writer: &mut Writer, triangles: &Triangles) {
 fn about_z(map: DAffine3) -> DAffine3 {
     let m = map.matrix3;
     DAffine3 { matrix3: DMat3::from_cols(m.z_axis, m.x_axis, m.y_axis), ..map }
-}
-
-fn plain(writer: &mut Writer, origin: Option<OriginId>, paint: Paint) -> Option<Rgb> {
-    match paint {
-        Paint::Plain(color) => Some(color),
-        Paint::Texture(_) => {
-            writer.refuse(origin, TEXTURES, None);
-            None
-        }
-    }
 }
 
 fn roughness(alpha: f64) -> String {

@@ -10,7 +10,7 @@ use super::{Writer, number, numbers, triangles};
 use crate::color::Rgb;
 use crate::math::{DAffine3, DVec3, PI};
 use crate::scene::shape::{Form, Quadric};
-use crate::scene::{Light, Material, OriginId, Paint, Primitive, Projection, Shape};
+use crate::scene::{Light, Material, Primitive, Projection, Shape};
 
 /// The distance up to which light does not fall off, in sizes of the scene.
 const NEAR: f64 = 1e-6;
@@ -146,15 +146,15 @@ fn material(writer: &mut Writer, primitive: &Primitive) -> Option<String> {
     let origin = Some(primitive.origin);
     Some(match writer.scene.material(primitive) {
         Material::Diffuse { color } => {
-            let color = plain(writer, origin, *color)?;
+            let color = writer.plain(origin, *color, TEXTURES)?;
             format!("pigment {{ {} }} finish {{ diffuse 1 }}", rgb(color))
         }
         Material::Mirror { color } => {
-            let color = plain(writer, origin, *color)?;
+            let color = writer.plain(origin, *color, TEXTURES)?;
             format!("pigment {{ rgb 0 }} finish {{ reflection {{ {} }} }}", rgb(color))
         }
         Material::Metal { color, alpha } => {
-            let color = plain(writer, origin, *color)?;
+            let color = writer.plain(origin, *color, TEXTURES)?;
             if *alpha > 0.0 {
                 writer.nearly(origin, "has no rough metals", "they are polished").then_some(())?;
             }
@@ -162,7 +162,7 @@ fn material(writer: &mut Writer, primitive: &Primitive) -> Option<String> {
             format!("pigment {{ rgb 0 }} finish {{ reflection {{ {}, rgb 1 falloff 5 }} }}", rgb(color))
         }
         Material::Plastic { color, ior, .. } => {
-            let color = plain(writer, origin, *color)?;
+            let color = writer.plain(origin, *color, TEXTURES)?;
             writer
                 .nearly(origin, "has other plastics", "the base is not darkened by its coat")
                 .then_some(())?;
@@ -192,16 +192,6 @@ fn material(writer: &mut Writer, primitive: &Primitive) -> Option<String> {
             return None;
         }
     })
-}
-
-fn plain(writer: &mut Writer, origin: Option<OriginId>, paint: Paint) -> Option<Rgb> {
-    match paint {
-        Paint::Plain(color) => Some(color),
-        Paint::Texture(_) => {
-            writer.refuse(origin, TEXTURES, None);
-            None
-        }
-    }
 }
 
 fn rgb(color: Rgb) -> String {

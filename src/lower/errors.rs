@@ -2,7 +2,6 @@
 
 use super::MAX_PIXELS;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::files::FileError;
 use crate::schema::camera;
 use crate::span::{SourceId, Span};
 
@@ -85,22 +84,6 @@ pub(super) fn textured_power(span: Span, color: Span) -> Diagnostic {
         .at("spread how?")
         .label(color, "a texture")
         .help("how much a texture leaves of it is not known: give `radiance: 1W/m2` in its place")
-}
-
-/// A file that cannot be had. `written` is its path in the text.
-pub(super) fn file(written: &str, error: FileError, span: Span) -> Diagnostic {
-    let (label, help) = match error {
-        FileError::Missing => {
-            ("no such file".to_string(), "paths start at the folder of the file they stand in")
-        }
-        FileError::Outside => (
-            "not below the root folder".to_string(),
-            "a scene reads only files below its root folder; choose a wider one with `--root`",
-        ),
-        FileError::TooLarge(most) => (format!("more than {most} bytes"), "store it smaller"),
-        FileError::Unreadable(why) => (why, "look at the file's name and permissions"),
-    };
-    Diagnostic::new(Code::E0501, format!("`{written}` cannot be read"), span).at(label).help(help)
 }
 
 pub(super) fn no_picture(written: &str, why: &str, span: Span) -> Diagnostic {

@@ -6,7 +6,7 @@ use crate::asset::Mesh;
 use crate::asset::mesh::MOST_TRIANGLES;
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Thing, Things};
-use crate::files::{Contents, FilePath, Files};
+use crate::files::{Contents, FileError, FilePath, Files};
 use crate::math::{DAffine3, DVec3};
 use crate::scene::Shape;
 use crate::scene::shape::Instance;
@@ -66,7 +66,7 @@ impl<'f> Meshes<'f> {
     }
 
     fn file(&self, file: &str, span: Span) -> Result<Arc<Mesh>, Box<Diagnostic>> {
-        let refuse = |error| Box::new(errors::file(file, error, span));
+        let refuse = |error: FileError| Box::new(error.diagnostic(file, span));
         let path = self.sources.get(span.source).path.join(file).map_err(refuse)?;
         let mut read = self.read.borrow_mut();
         let found = match read.files.get(&path) {

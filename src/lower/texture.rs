@@ -4,7 +4,7 @@ use super::errors;
 use crate::asset::Image;
 use crate::diagnostic::Diagnostic;
 use crate::eval::{self, Given, Pattern, Read};
-use crate::files::{Contents, FilePath, Files};
+use crate::files::{Contents, FileError, FilePath, Files};
 use crate::math::DVec2;
 use crate::scene::{ImageId, Paint, Texture, TextureId};
 use crate::schema;
@@ -103,7 +103,7 @@ impl<'f> Textures<'f> {
 
     /// The picture of a file, named as the scene names it.
     pub(super) fn image(&mut self, file: &str, span: Span) -> Result<ImageId, Box<Diagnostic>> {
-        let refuse = |error| Box::new(errors::file(file, error, span));
+        let refuse = |error: FileError| Box::new(error.diagnostic(file, span));
         let path = self.sources.get(span.source).path.join(file).map_err(refuse)?;
         let found = match self.read.get(&path) {
             Some(found) => found.clone(),

@@ -26,15 +26,9 @@ pub(super) type Node<'t> = Pair<'t, Rule>;
 /// A piece of the tree, and how many expressions lie inside each other in it.
 pub(super) type Deep<T> = (T, usize);
 
-/// The words that cannot be names.
-const RESERVED: &[&str] = &[
-    "let", "material", "and", "or", "not", "true", "false", "param", "part", "import", "as", "for", "in",
-    "if", "then", "else", "fn", "to", "assert",
-];
-
 /// Whether a word is one of the language, and so no name.
 pub(super) fn is_reserved(word: &str) -> bool {
-    RESERVED.contains(&word)
+    super::RESERVED.contains(&word)
 }
 
 /// The text that items were cut from.
@@ -263,6 +257,11 @@ impl<'t> Builder<'t> {
     /// Where the item begins in its file.
     pub(super) fn base(&self) -> usize {
         self.base
+    }
+
+    /// Whether white space stands at a place of the source, whatever the item has there.
+    pub(super) fn is_blank(&self, place: u32) -> bool {
+        self.source.text.as_bytes().get(place as usize).is_some_and(u8::is_ascii_whitespace)
     }
 
     /// The text behind an offset.

@@ -26,6 +26,12 @@ use crate::diagnostic::Diagnostic;
 use crate::span::{SourceId, Span};
 use rayon::prelude::*;
 
+/// The words of the language, which cannot be names.
+pub const RESERVED: &[&str] = &[
+    "let", "material", "and", "or", "not", "true", "false", "param", "part", "import", "as", "for", "in",
+    "if", "then", "else", "fn", "to", "assert",
+];
+
 /// The deepest nesting of brackets, and the deepest tree of an expression.
 pub const MAX_DEPTH: usize = 512;
 

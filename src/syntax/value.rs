@@ -268,7 +268,7 @@ struct Elements {
     unit: Option<Name>,
     /// Just behind the closing parenthesis.
     end: u32,
-    /// Whether the closing parenthesis is there.
+    /// Whether the closing parenthesis was written.
     closed: bool,
 }
 
@@ -295,7 +295,8 @@ fn elements(builder: &Builder, pair: Node) -> Elements {
             Rule::semicolon => builder.semicolon(&pair),
             _ => {
                 let close = builder.span(&pair);
-                found.closed = pair.as_str().starts_with(')');
+                // Where none was written, one may have been put into the white space before what showed that.
+                found.closed = pair.as_str().starts_with(')') && !builder.is_blank(close.start);
                 found.end = if found.closed { close.start + 1 } else { close.start };
                 found.unit = pair.into_inner().next().map(|unit| unit_name(builder, unit));
             }
