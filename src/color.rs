@@ -42,13 +42,18 @@ pub fn from_hex(digits: &str) -> Option<Rgb> {
     if !digits.bytes().all(|b| b.is_ascii_hexdigit()) {
         return None;
     }
-    let channel = |text: &str| u8::from_str_radix(text, 16).ok().map(|v| f64::from(v) / 255.0);
-    let parts = match digits.len() {
-        3 => [0, 1, 2].map(|i| digits[i..i + 1].repeat(2)),
-        6 => [0, 2, 4].map(|i| digits[i..i + 2].to_string()),
-        _ => return None,
-    };
-    Some(srgb(channel(&parts[0])?, channel(&parts[1])?, channel(&parts[2])?))
+    let bits = u32::from_str_radix(digits, 16).ok()?;
+    match digits.len() {
+        3 => Some(from_bits(0x11 * ((bits & 0xf00) << 8 | (bits & 0xf0) << 4 | bits & 0xf))),
+        6 => Some(from_bits(bits)),
+        _ => None,
+    }
+}
+
+/// The colour that `#rrggbb` stands for, from 0xrrggbb.
+pub fn from_bits(bits: u32) -> Rgb {
+    let [_, r, g, b] = bits.to_be_bytes().map(|channel| f64::from(channel) / 255.0);
+    srgb(r, g, b)
 }
 
 /// Names of colours that stand in every file, with their display-referred value.

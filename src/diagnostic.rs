@@ -180,6 +180,13 @@ impl Diagnostic {
         self
     }
 
+    /// Moves all that it points at.
+    pub fn move_places(&mut self, moved: impl Fn(Span) -> Span) {
+        let labels = self.labels.iter_mut().chain([&mut self.primary]).map(|label| &mut label.span);
+        let edits = self.fix.iter_mut().flat_map(|fix| &mut fix.edits).map(|(span, _)| span);
+        labels.chain(edits).chain(&mut self.uses).for_each(|span| *span = moved(*span));
+    }
+
     /// Error or warning.
     pub fn severity(&self) -> Severity {
         self.code.severity()

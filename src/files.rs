@@ -3,6 +3,9 @@
 //! The library reads none by itself. It resolves what is written to a path below the scene's root folder, and asks
 //! whoever called it for the bytes; the caller may keep what was asked for, and so knows what a picture depends on.
 
+use crate::diagnostic::{Code, Diagnostic};
+use crate::span::Span;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
@@ -21,6 +24,11 @@ pub trait Files: Sync {
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FilePath(String);
 
+/// Where the pictures and meshes of a scene were read, by the hash of what they hold. It stands beside the scene:
+/// from where the same content was read does not change the picture.
+#[derive(Clone, Debug, Default)]
+pub struct Contents(BTreeMap<[u8; 32], FilePath>);
+
 /// Why a file cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileError {
@@ -32,6 +40,32 @@ pub enum FileError {
     TooLarge(usize),
     /// In words, such as `permission denied` or `is a folder`.
     Unreadable(String),
+}
+
+impl FileError {
+    /// What is said of it. `written` is the path as it stands at `span` in a source.
+    pub fn diagnostic(&self, written: &str, span: Span) -> Diagnostic {
+        let (code, message, label) = match self {
+            FileError::Missing => (Code::E0501, format!("there is no file `{written}`"), "not found"),
+            FileError::Outside => {
+                (Code::E0501, format!("`{written}` is not below the scene's root folder"), "outside")
+            }
+            FileError::TooLarge(most) => {
+                (Code::E0406, format!("`{written}` is larger than {} MiB", most >> 20), "too large")
+            }
+            FileError::Unreadable(reason) => {
+                (Code::E0501, format!("`{written}` cannot be read: {reason}"), "not readable")
+            }
+        };
+        let diagnostic = Diagnostic::new(code, message, span).at(label);
+        match self {
+            FileError::Missing => diagnostic.help("a path counts from the folder of the file that names it"),
+            FileError::Outside => {
+                diagnostic.help("`--root FOLDER` says below which folder files may be read")
+            }
+            FileError::TooLarge(_) | FileError::Unreadable(_) => diagnostic,
+        }
+    }
 }
 
 impl FilePath {
@@ -64,9 +98,35 @@ impl FilePath {
         }
     }
 
+    /// What to write in another file for this one, so that [`FilePath::join`] finds it from there.
+    pub fn written_in(&self, other: &FilePath) -> String {
+        let ours: Vec<&str> = self.0.split('/').collect();
+        let mut around: Vec<&str> = other.0.split('/').collect();
+        around.pop();
+        // The last name is the file's own, also where a folder is called the same.
+        let folders = &ours[..ours.len() - 1];
+        let shared = folders.iter().zip(&around).take_while(|(a, b)| a == b).count();
+        // What could be taken for the name of a drive is not.
+        let here =
+            if shared == around.len() && ours[shared].as_bytes().get(1) == Some(&b':') { "./" } else { "" };
+        here.to_string() + &"../".repeat(around.len() - shared) + &ours[shared..].join("/")
+    }
+
     /// The path as text.
     pub fn as_str(&self) -> &str {
         &self.0
+    }
+}
+
+impl Contents {
+    /// Says where something was read. Of several files that hold the same, the first is kept.
+    pub fn add(&mut self, hash: blake3::Hash, path: &FilePath) {
+        self.0.entry(*hash.as_bytes()).or_insert_with(|| path.clone());
+    }
+
+    /// Where it was read.
+    pub fn path(&self, hash: blake3::Hash) -> Option<&FilePath> {
+        self.0.get(hash.as_bytes())
     }
 }
 
@@ -102,5 +162,17 @@ mod tests {
         }
         assert_eq!(FilePath::root("scene.rt").join("a.rt"), Ok(FilePath("a.rt".into())));
         assert!(join("../..").is_err());
+    }
+
+    #[test]
+    fn what_is_written_for_a_path_leads_to_it() {
+        let path = |text: &str| FilePath(text.into());
+        for other in ["scene.rt", "rooms/scene.rt", "rooms/hall/scene.rt", "rooms/hall/a.png/scene.rt"] {
+            for wanted in ["a.png", "rooms/a.png", "rooms/hall/a.png", "b/c/d.png", "b:/d.png"] {
+                let written = path(wanted).written_in(&path(other));
+                assert_eq!(path(other).join(&written), Ok(path(wanted)), "{other}: {written}");
+            }
+        }
+        assert_eq!(path("rooms/a.png").written_in(&path("rooms/hall/scene.rt")), "../a.png");
     }
 }

@@ -8,9 +8,6 @@ use crate::syntax::ast::{self, Entry, Name, StatementKind};
 use crate::syntax::{self, MAX_SOURCE};
 use std::collections::BTreeMap;
 
-/// The most levels of files that import files, and of parts within parts.
-pub const MAX_LEVELS: usize = 64;
-
 /// The most bytes that all imported files have together.
 const MAX_IMPORTED: usize = 4 * MAX_SOURCE;
 
@@ -35,11 +32,18 @@ pub struct ImportedFile {
     pub imports: BTreeMap<Span, usize>,
 }
 
-/// Parses a source, and reads and parses what it imports.
-pub fn import(files: &dyn Files, sources: &mut Sources, main: SourceId) -> Imported {
+/// Parses a source, and reads and parses what it imports, at most so many levels deep.
+pub fn import(files: &dyn Files, sources: &mut Sources, main: SourceId, levels: usize) -> Imported {
     let path = sources.get(main).path.clone();
-    let mut importer =
-        Importer { files, sources, known: BTreeMap::new(), open: vec![], bytes: 0, out: Imported::default() };
+    let mut importer = Importer {
+        files,
+        sources,
+        levels,
+        known: BTreeMap::new(),
+        open: vec![],
+        bytes: 0,
+        out: Imported::default(),
+    };
     importer.file(main, path);
     importer.out
 }
@@ -47,6 +51,8 @@ pub fn import(files: &dyn Files, sources: &mut Sources, main: SourceId) -> Impor
 struct Importer<'a> {
     files: &'a dyn Files,
     sources: &'a mut Sources,
+    /// The most files that may be open at once.
+    levels: usize,
     /// Files that were looked at; none where one cannot be used.
     known: BTreeMap<FilePath, Option<usize>>,
     /// The files that are being read, outermost first.
@@ -57,7 +63,7 @@ struct Importer<'a> {
 
 impl Importer<'_> {
     fn file(&mut self, source: SourceId, path: FilePath) -> usize {
-        let (tree, found) = syntax::parse(source, &self.sources.get(source).text);
+        let (tree, found) = syntax::parse_rows(source, &self.sources.get(source).text);
         self.out.diagnostics.extend(found);
         self.open.push(path.clone());
         let mut imports = BTreeMap::new();
@@ -78,7 +84,7 @@ impl Importer<'_> {
     fn find(&mut self, from: &FilePath, written: &Name) -> Option<usize> {
         let path = match from.join(&written.text) {
             Ok(path) => path,
-            Err(error) => return self.report(errors::file(written, &error)),
+            Err(error) => return self.report(error.diagnostic(&written.text, written.span)),
         };
         if let Some(first) = self.open.iter().position(|open| *open == path) {
             return self.report(errors::cycle(written, &self.open[first..]));
@@ -86,8 +92,8 @@ impl Importer<'_> {
         if let Some(known) = self.known.get(&path) {
             return *known;
         }
-        if self.open.len() >= MAX_LEVELS {
-            return self.report(errors::levels(written));
+        if self.open.len() >= self.levels {
+            return self.report(errors::levels(written, self.levels));
         }
         let file = self.read(&path, written);
         self.known.insert(path, file);
@@ -97,11 +103,11 @@ impl Importer<'_> {
     fn read(&mut self, path: &FilePath, written: &Name) -> Option<usize> {
         let bytes = match self.files.read(path, MAX_SOURCE) {
             Ok(bytes) => bytes,
-            Err(error) => return self.report(errors::file(written, &error)),
+            Err(error) => return self.report(error.diagnostic(&written.text, written.span)),
         };
         self.bytes += bytes.len();
         if bytes.len() > MAX_SOURCE || self.bytes > MAX_IMPORTED {
-            return self.report(errors::file(written, &FileError::TooLarge(MAX_SOURCE)));
+            return self.report(FileError::TooLarge(MAX_SOURCE).diagnostic(&written.text, written.span));
         }
         let Ok(text) = std::str::from_utf8(&bytes) else { return self.report(errors::not_text(written)) };
         let source = self.sources.add(Source::new(self.files.name(path), text).at(path.clone()));
@@ -114,37 +120,8 @@ impl Importer<'_> {
     }
 }
 
-/// Why a file cannot be used, at the text that names it.
-pub fn unusable(written: &Name, error: &FileError) -> Diagnostic {
-    errors::file(written, error)
-}
-
 mod errors {
     use super::*;
-
-    pub(super) fn file(written: &Name, error: &FileError) -> Diagnostic {
-        let path = &written.text;
-        let (code, message, label) = match error {
-            FileError::Missing => (Code::E0501, format!("there is no file `{path}`"), "not found"),
-            FileError::Outside => {
-                (Code::E0501, format!("`{path}` is not below the scene's root folder"), "outside")
-            }
-            FileError::TooLarge(most) => {
-                (Code::E0406, format!("`{path}` is larger than {} MiB", most >> 20), "too large")
-            }
-            FileError::Unreadable(reason) => {
-                (Code::E0501, format!("`{path}` cannot be read: {reason}"), "not readable")
-            }
-        };
-        let diagnostic = Diagnostic::new(code, message, written.span).at(label);
-        match error {
-            FileError::Missing => diagnostic.help("a path counts from the folder of the file that names it"),
-            FileError::Outside => {
-                diagnostic.help("`--root FOLDER` says below which folder files may be read")
-            }
-            FileError::TooLarge(_) | FileError::Unreadable(_) => diagnostic,
-        }
-    }
 
     pub(super) fn not_text(written: &Name) -> Diagnostic {
         Diagnostic::new(Code::E0501, format!("`{}` is not UTF-8 text", written.text), written.span)
@@ -164,8 +141,8 @@ mod errors {
             .help(format!("break the cycle {}", path.join(" → ")))
     }
 
-    pub(super) fn levels(written: &Name) -> Diagnostic {
-        Diagnostic::new(Code::E0406, format!("more than {MAX_LEVELS} levels of imports"), written.span)
+    pub(super) fn levels(written: &Name, most: usize) -> Diagnostic {
+        Diagnostic::new(Code::E0406, format!("more than {most} levels of imports"), written.span)
             .at("one level too many")
     }
 }

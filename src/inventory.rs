@@ -48,7 +48,8 @@ impl Inventory {
                 *inventory.kinds.entry(kind.name).or_default() += 1;
             }
         }
-        let cameras = things.iter().filter(|thing| thing.made.kind == camera::KIND && !thing.hidden);
+        let cameras = things.of(|kind| kind == camera::KIND).map(|(_, thing)| thing);
+        let cameras = cameras.filter(|thing| !thing.hidden);
         inventory.cameras = cameras.map(|thing| thing.name().map(|name| name.to_string())).collect();
         inventory
     }

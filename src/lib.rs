@@ -21,6 +21,9 @@
 //! | [`eval`] | program to things, each with the chain of uses that made it | the renderer |
 //! | [`lower`] | things to scene: defaults, cameras, transforms, radiometry | text |
 //! | [`scene`] | the picture in its simplest form | where it came from |
+//! | [`export`] | scene to the texts of other renderers | how this one draws it |
+//! | [`expand`] | scene to a flat text of the language | the text it came from |
+//! | [`lint`] | what is probably not meant in a scene | text |
 //! | [`render`] | scene to film; cannot fail | places, files, syntax |
 //! | [`output`] | film to the bytes of image files, and back | files |
 //! | [`explain`] | the page on each diagnostic | how it is shown |
@@ -35,10 +38,13 @@ pub mod color;
 pub mod develop;
 pub mod diagnostic;
 pub mod eval;
+pub mod expand;
 pub mod explain;
+pub mod export;
 pub mod files;
 pub mod import;
 pub mod inventory;
+pub mod lint;
 pub mod lower;
 pub mod math;
 pub mod mend;
@@ -55,7 +61,7 @@ pub mod units;
 use check::Setting;
 use diagnostic::{Code, Diagnostic};
 use eval::{Limits, Origins, Thing, Things};
-use files::Files;
+use files::{Contents, Files};
 use import::Imported;
 use inventory::Inventory;
 use lower::{Meshes, Overrides, Places};
@@ -74,6 +80,8 @@ pub struct Compiled {
     pub diagnostics: Vec<Diagnostic>,
     /// One line for each default that was chosen for the user.
     pub notes: Vec<String>,
+    /// Where the pictures and meshes of the scene were read.
+    pub contents: Contents,
     /// What stands in the picture.
     pub inventory: Inventory,
     /// Where settings stand that only a finished picture can judge.
@@ -102,7 +110,7 @@ const STACK: usize = 256 << 20;
 /// errors, so that one run reports all that is wrong. `files` is what the source may read; what it imports is added
 /// to `sources`, and so is each setting.
 pub fn compile(files: &dyn Files, sources: &mut Sources, main: SourceId, options: &Options) -> Compiled {
-    let imported = import::import(files, sources, main);
+    let imported = import::import(files, sources, main, options.limits.levels);
     let (settings, slips) = check::settings(sources, &options.set);
     let sources = &*sources;
     let work = move || stages(files, sources, main, imported, settings, slips, options);
@@ -141,6 +149,9 @@ fn stages(
     if !diagnostic::any_errors(&diagnostics) {
         diagnostics.extend(lower::nothing_to_see(&things, main));
     }
+    if let Some(scene) = lowered.scene.as_ref().filter(|_| !diagnostic::any_errors(&diagnostics)) {
+        diagnostics.extend(lint::lint(scene, &things.origins, &lowered.marks));
+    }
     let unused = allow::allow(&program.allows, &mut diagnostics);
     diagnostics.extend(unused);
     diagnostics.sort_by_key(|diagnostic| (diagnostic.primary.span, diagnostic.code));
@@ -155,6 +166,7 @@ fn stages(
         origins: things.origins,
         diagnostics,
         notes: lowered.notes,
+        contents: lowered.contents,
         main,
         allows: program.allows,
         places: lowered.places,
@@ -169,6 +181,7 @@ impl Compiled {
             origins: Origins::default(),
             inventory: Inventory::default(),
             notes: vec![],
+            contents: Contents::default(),
             main: diagnostic.primary.span.source,
             diagnostics: vec![diagnostic],
             allows: vec![],

@@ -71,13 +71,15 @@ fn what_is_offered_as_a_mend_mends() {
     for folder in ["diagnostics", "syntax"] {
         for entry in std::fs::read_dir(root.join(folder)).unwrap() {
             let path = entry.unwrap().path();
+            let path = if path.is_dir() { path.join("main.rt") } else { path };
             if path.extension().is_none_or(|extension| extension != "rt") {
                 continue;
             }
+            let below = path.strip_prefix(&root).unwrap().to_str().unwrap();
             let mut text = std::fs::read_to_string(&path).unwrap();
             let mut slips: BTreeSet<&str> = BTreeSet::new();
             for _ in 0..10 {
-                let diagnostics = given(&text);
+                let diagnostics = given(below, &text);
                 let offered = diagnostics.iter().filter(|diagnostic| diagnostic.fix.is_some());
                 // A code that also stands where nothing is offered is judged there.
                 let bare = |code| diagnostics.iter().any(|d| d.code == code && d.fix.is_none());
@@ -86,7 +88,7 @@ fn what_is_offered_as_a_mend_mends() {
                 text = next.text;
                 mended += 1;
             }
-            let left = given(&text);
+            let left = given(below, &text);
             let codes: BTreeSet<&str> = left.iter().map(|d| d.code.as_str()).collect();
             if left.iter().any(|d| d.fix.is_some()) || slips.iter().any(|code| codes.contains(code)) {
                 wrong.push(format!("{}: {slips:?} became {codes:?} in\n{text}", path.display()));
@@ -97,11 +99,13 @@ fn what_is_offered_as_a_mend_mends() {
     assert!(mended > 10, "{mended} cases were mended");
 }
 
-fn given(text: &str) -> Vec<Diagnostic> {
+/// What is said of a text that stands in place of a case. `below` is its path among the cases, which share files.
+fn given(below: &str, text: &str) -> Vec<Diagnostic> {
     let mut sources = Sources::default();
-    let id = sources.add(Source::new("case.rt", text));
-    let folder = Folder(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/cases/diagnostics").into());
-    compile(&folder, &mut sources, id, &Options::default()).diagnostics
+    let path = FilePath::root("").join(below).unwrap();
+    let id = sources.add(Source::new(below, text).at(path));
+    let root = Folder(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/cases").into());
+    compile(&root, &mut sources, id, &Options::default()).diagnostics
 }
 
 /// Each code the compiler can give has a case, here or among those of the syntax. E0009 is found before there is

@@ -62,6 +62,7 @@ impl Dump<'_> {
                     self.expr(&format!("{}: ", named(self.text, &field.name)), &field.value)
                 }
                 Entry::Statement(statement) => self.statement(statement),
+                Entry::Rows(_) => unreachable!("`parse` writes them out"),
                 Entry::Broken(broken) => {
                     let name = broken.name.as_ref().map_or("-", |name| named(self.text, name));
                     self.line(&format!("broken {name}"), broken.span);

@@ -48,6 +48,21 @@ fn files_keep_their_meaning() {
     }
 }
 
+#[test]
+fn examples_are_laid_out() {
+    let mut paths = vec![];
+    all_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("examples"), &mut paths);
+    for path in paths {
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert_eq!(
+            format(SOURCE, &text).0,
+            text,
+            "{}: `rtc fmt examples/**/*.rt` lays it out",
+            path.display()
+        );
+    }
+}
+
 fn check(text: &str) {
     invariants::fmt(text);
 }

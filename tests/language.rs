@@ -83,6 +83,52 @@ proptest! {
     }
 }
 
+/// A file of things that differ in their literals, sound or not. In each are four blanks before the closing brace.
+fn things_alike() -> impl Strategy<Value = String> {
+    let shape = prop::sample::select(vec![
+        "sphere { at: (N, N, N)m, radius: Nmm     }",
+        "sphere { at: (Nm, N, -Nm), radius: Nm, material: diffuse { color: #N1a     } }",
+        "sphere { radius: Nm, material: glass { roughness: N%     } }",
+        "ball { at: (N, N, N)cm     }",
+        "hyperboloid { axes: (N, N, N)m, sheets: N     }",
+        "sphere { radios: Nm     }",
+        "knob { size: Nm     }",
+        "light { at: (N, N, N)m, power: NW     }",
+        "box { size: (N, 1, N)m, place: turn(y: Ndeg)     }",
+    ]);
+    let number = prop::sample::select(vec!["0", "1", "2", "12", "0.5", "0.0", "55", "100", "1000.25"]);
+    let item = (shape, prop::collection::vec(number, 4)).prop_map(|(shape, numbers)| {
+        let pieces = shape.split('N').enumerate();
+        pieces
+            .map(|(i, piece)| if i > 0 { format!("{}{piece}", numbers[i % 4]) } else { piece.into() })
+            .collect()
+    });
+    prop::collection::vec(item, 1..40).prop_map(|items: Vec<String>| {
+        let declared = "material glass = dielectric {}\nlet ball = sphere { radius: 1m }\n\
+            part knob { param size: length = 1m in 1cm to 50m, sphere { radius: size } }\n";
+        format!("{declared}{}", items.join("\n"))
+    })
+}
+
+proptest! {
+    /// A comment in a thing keeps its tree from being taken for one of a row.
+    #[test]
+    fn rows_are_what_they_stand_for(text in things_alike()) {
+        let compiled = |text: &str| {
+            let mut sources = Sources::default();
+            let id = sources.add(Source::new("main.rt", text));
+            let compiled = compile(&NoFiles, &mut sources, id, &Options::default());
+            let primitives = compiled.scene.iter().flat_map(|scene| &scene.primitives);
+            let origins: Vec<_> = primitives.map(|each| compiled.origins.chain(each.origin)).collect();
+            (format!("{:?}", compiled.diagnostics), compiled.scene, origins)
+        };
+        let (rows, apart) = (compiled(&text), compiled(&text.replace("     }", "/**/ }")));
+        prop_assert_eq!(rows.0.replace("     }", "/**/ }"), apart.0);
+        prop_assert_eq!(rows.1, apart.1);
+        prop_assert_eq!(rows.2, apart.2);
+    }
+}
+
 #[test]
 fn things_come_in_the_order_written() {
     let scene = scene("sphere { radius: r }\nlet r = 2 * q\nsphere { radius: q }\nlet q = 1m");

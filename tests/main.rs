@@ -10,6 +10,8 @@ mod documents;
 mod folder;
 mod language;
 mod dump;
+mod expand;
+mod export;
 mod format;
 mod fuzz;
 #[path = "../fuzz/invariants.rs"]

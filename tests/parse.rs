@@ -262,6 +262,7 @@ fn start_of(entry: &Entry) -> u32 {
         Entry::Field(field) => field.name.span.start,
         Entry::Broken(broken) => broken.span.start,
         Entry::Statement(statement) => statement.span.start,
+        Entry::Rows(rows) => rows.span().start,
     }
 }
 
@@ -272,6 +273,7 @@ fn is_ordered(body: &Body) -> bool {
 fn any_broken(body: &Body) -> bool {
     body.entries.iter().any(|entry| match entry {
         Entry::Broken(_) => true,
+        Entry::Rows(_) => false,
         Entry::Field(field) => matches!(field.value.kind, ExprKind::Invalid),
         Entry::Statement(statement) => match &statement.kind {
             StatementKind::Thing { construct, .. } => any_broken(&construct.body),

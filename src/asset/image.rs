@@ -113,6 +113,11 @@ impl Image {
         color(self.pixels[y as usize * self.width as usize + x as usize])
     }
 
+    /// Of its pixels.
+    pub fn hash(&self) -> blake3::Hash {
+        self.hash
+    }
+
     /// The mean of all pixels.
     pub fn mean(&self) -> Rgb {
         self.mean

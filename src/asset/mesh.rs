@@ -53,7 +53,7 @@ impl Mesh {
 
     fn new(raw: Raw) -> Result<Mesh, String> {
         let Raw { positions, normals, uvs, mut triangles } = raw;
-        if positions.iter().any(|p| !(p.abs().max_element() < FARTHEST)) {
+        if positions.iter().any(|p| !p.is_finite() || p.abs().max_element() >= FARTHEST) {
             return Err("has a vertex that is not finite".into());
         }
         if triangles.iter().flatten().any(|&corner| corner as usize >= positions.len()) {
@@ -98,6 +98,12 @@ impl Mesh {
     /// How many triangles it has.
     pub fn len(&self) -> usize {
         self.triangles.len()
+    }
+
+    /// How many bytes of memory it takes.
+    pub fn bytes(&self) -> usize {
+        let vectors = size_of_val(&self.positions[..]) + size_of_val(&self.normals[..]);
+        vectors + size_of_val(&self.uvs[..]) + size_of_val(&self.triangles[..])
     }
 
     /// Whether it has no triangle, which never is.

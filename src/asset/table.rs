@@ -47,11 +47,7 @@ pub enum Cells {
 pub fn read(bytes: &[u8]) -> Result<Table, String> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let separator = separator(bytes);
-    let mut reader = csv::ReaderBuilder::new()
-        .delimiter(separator)
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_reader(bytes);
+    let mut reader = csv::ReaderBuilder::new().delimiter(separator).comment(Some(b'#')).from_reader(bytes);
     let heads = reader.headers().map_err(|error| problem(&error))?.clone();
     if heads.is_empty() {
         return Err("it is empty".into());
@@ -70,7 +66,8 @@ pub fn read(bytes: &[u8]) -> Result<Table, String> {
             return Err(format!("it has more than {MAX_CELLS} cells"));
         }
         for (column, cell) in columns.iter_mut().zip(&record) {
-            column.push(cell);
+            // The reader's own trimming copies every record.
+            column.push(cell.trim());
         }
     }
     columns.iter_mut().for_each(Column::finish);

@@ -20,6 +20,7 @@ impl<'a> Checker<'a> {
         for entry in entries {
             match entry {
                 Entry::Statement(statement) => items.push(Item::Statement(statement)),
+                Entry::Rows(rows) => items.push(Item::Rows(rows)),
                 Entry::Broken(broken) => items.push(Item::Broken(broken)),
                 Entry::Field(field) => {
                     self.report(errors::field_of_nothing(&field.name, inside));
@@ -63,6 +64,7 @@ impl<'a> Checker<'a> {
             let span = match item {
                 Item::Statement(statement) => statement.span,
                 Item::Broken(broken) => broken.span,
+                Item::Rows(rows) => rows.span(),
             };
             Statement { kind: StatementKind::Invalid, span, off: false, solo: false }
         };
@@ -94,9 +96,10 @@ impl<'a> Checker<'a> {
     }
 
     /// One statement, and what its name means.
-    fn item(&mut self, item: &Item, place: Place, slot: Option<usize>) -> (Statement, Type) {
+    pub(super) fn item(&mut self, item: &Item, place: Place, slot: Option<usize>) -> (Statement, Type) {
         let statement = match item {
             Item::Statement(statement) => *statement,
+            Item::Rows(rows) => return (self.rows(rows, place), Type::Invalid),
             Item::Broken(broken) => {
                 let kind = StatementKind::Invalid;
                 return (Statement { kind, span: broken.span, off: false, solo: false }, Type::Invalid);
@@ -187,7 +190,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A thing in statement position.
-    fn drawn(
+    pub(super) fn drawn(
         &mut self,
         construct: &ast::Construct,
         name: Option<&Name>,

@@ -55,6 +55,9 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
     // A unit of two letters is near to all others; only its first letter tells what was meant.
     let start = name.text.chars().next();
     let same_start = |guess: &&str| what != "unit" || guess.chars().next() == start;
+    if let Some(help) = said_otherwise(what, &name.text) {
+        return diagnostic.help(help);
+    }
     match closest(&name.text, candidates).filter(same_start) {
         Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
         None if what == "unit" && is_side(&name.text) => {
@@ -74,6 +77,27 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
         None if what == "name" => diagnostic.help(format!("declare it: `let {} = …`", name.text)),
         None => diagnostic,
     }
+}
+
+/// How one says here what a name means elsewhere, or at another place.
+fn said_otherwise(what: &str, name: &str) -> Option<String> {
+    let kind = || schema::kind(name).is_some();
+    Some(match (what, name) {
+        ("name" | "function", _) if kind() => {
+            format!("`{name}` is a kind, and makes something with its fields in braces: `{name} {{ … }}`")
+        }
+        ("name", "pi" | "PI" | "Pi") => "half a turn is `180deg`, and as a number `180deg / 1rad`".into(),
+        ("name", "yes" | "on" | "True" | "TRUE") => "write `true`".into(),
+        ("name", "no" | "off" | "False" | "FALSE") => "write `false`".into(),
+        ("function", "rotate") => "`turn` turns about one axis: `turn(y: 30deg)`".into(),
+        ("function", "translate") => "`move` moves: `move(0, 1m, 0)`".into(),
+        ("function", "lerp") => "`mix(a, b, t)` lies between two values".into(),
+        ("kind", "while") => "`for` repeats: `for i in range(7) { … }`".into(),
+        ("unit", "meter" | "metre" | "meters" | "metres" | "M") => "metres are written `m`".into(),
+        ("unit", "degree" | "degrees") => "degrees are written `deg`".into(),
+        ("unit", "px" | "pixel" | "pixels") => "a number of pixels has no unit".into(),
+        _ => return None,
+    })
 }
 
 /// Whether what stands behind a number is rather the rest of a size: `320x240`.

@@ -32,20 +32,22 @@ impl Checker<'_> {
                     (false, true) => Element::Int,
                     (false, false) => NUMBER,
                 };
-                (ExprKind::Number(*value), Type::Scalar(element))
+                (self.number(*value, 1.0, span), Type::Scalar(element))
             }
             Tree::Quantity { value, unit } => match self.unit(unit) {
                 Some(unit) => {
-                    (ExprKind::Number(value * unit.factor), Type::Scalar(Element::Quantity(unit.dim)))
+                    let number = self.number(*value, unit.factor, span);
+                    (number, Type::Scalar(Element::Quantity(unit.dim)))
                 }
                 None => (ExprKind::Invalid, Type::Invalid),
             },
             Tree::Scaled { value, unit } => self.scaled(value, unit, span),
             Tree::Bool(value) => (ExprKind::Bool(*value), Type::Bool),
             Tree::Text(text) => (ExprKind::Text(text.clone()), Type::Text),
-            Tree::Color(digits) => match color::from_hex(digits) {
-                Some(color) => (ExprKind::Color(color), Type::Color),
-                None => (ExprKind::Invalid, Type::Invalid),
+            Tree::Color(digits) => match (self.literal(span), color::from_hex(digits)) {
+                (Some(literal), _) => (ExprKind::RowColor { literal }, Type::Color),
+                (None, Some(color)) => (ExprKind::Color(color), Type::Color),
+                (None, None) => (ExprKind::Invalid, Type::Invalid),
             },
             Tree::Name(name) => match self.lookup(name) {
                 Some(found) => (found.kind, found.ty),

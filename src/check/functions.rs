@@ -112,6 +112,8 @@ functions! {
     Turn "turn" "turn(x: angle), turn(y: angle) or turn(z: angle)",
     /// A placement that moves.
     Move "move" "move(x, y, z) or move(point)",
+    /// A placement that takes the axes to three vectors, and the origin to a point.
+    Matrix "matrix" "matrix(x, y, z, origin)",
 }
 
 /// Finds a function by name.
@@ -185,6 +187,7 @@ impl Checker<'_> {
             Atan2 | Mod | Pow | Dot | Cross => &[2],
             Clamp | Mix | Rgb | Srgb | Hsv | Linspace => &[3],
             Scale | Move => &[1, 3],
+            Matrix => &[4],
             Range => &[1, 2],
             Min | Max | Rand | Checker | Stripes | Noise | Image => &[],
         };
@@ -210,6 +213,13 @@ impl Checker<'_> {
             Move if values.len() == 3 => arguments.each(&[LENGTH; 3], Type::Transform),
             Move => {
                 arguments.triple(0, Some(LENGTH))?;
+                Some(Type::Transform)
+            }
+            Matrix => {
+                for index in 0..3 {
+                    arguments.triple(index, Some(number))?;
+                }
+                arguments.triple(3, Some(LENGTH))?;
                 Some(Type::Transform)
             }
             Atan2 => arguments.joined(0..2).map(|_| Type::Scalar(Element::Quantity(ANGLE))),

@@ -54,6 +54,7 @@ impl Checker<'_> {
             name: name.map(|name| name.text.clone()),
             span: construct.span,
             fields: make.fields.iter().map(|(_, value)| value.span).collect(),
+            rows: None,
         });
         (Make { base, fields: make.fields, block, inside, written }, ty)
     }
@@ -231,6 +232,7 @@ impl Checker<'_> {
             let kind = ExprKind::Make(Box::new(part));
             make.fields.push((FieldPlace::Index(*index), Expr { kind, span: construct.span }));
         }
+        self.lost_fields(make, making, entries);
         let mut own = FieldSet::default();
         for (place, _) in &make.fields {
             match (kind, place) {
@@ -242,6 +244,24 @@ impl Checker<'_> {
         make.given = own.union(making.given);
         if let Kind::BuiltIn(kind) = kind {
             self.conflicts(kind, make.given, &places);
+        }
+    }
+
+    /// An entry of which nothing was understood may be any field: those that must be given count as given.
+    fn lost_fields(&self, make: &mut Unfinished, making: Making, entries: &[Entry]) {
+        let nameless = |entry: &Entry| match entry {
+            Entry::Broken(ast::Broken { name: None, span }) => Some(*span),
+            _ => None,
+        };
+        let (Kind::BuiltIn(kind), Some(lost)) = (making.kind, entries.iter().find_map(nameless)) else {
+            return;
+        };
+        for (index, field) in kind.fields().enumerate() {
+            let place = FieldPlace::Index(index);
+            let given = making.given.has(index) || make.fields.iter().any(|(given, _)| *given == place);
+            if field.default == Preset::Required && !given {
+                make.fields.push((place, Expr::invalid(lost)));
+            }
         }
     }
 

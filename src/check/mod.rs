@@ -15,6 +15,7 @@ mod order;
 mod part;
 mod program;
 mod query;
+mod rows;
 mod scope;
 mod setting;
 mod table;
@@ -33,10 +34,12 @@ use crate::files::{Files, NoFiles};
 use crate::import::Imported;
 use crate::source::Sources;
 use crate::span::Span;
+use crate::syntax::Shape;
 use crate::syntax::ast::{self, Entry, StatementKind as Tree};
 use smol_str::SmolStr;
 use std::cell::Cell;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Checks a file with everything it imports.
 pub fn check(
@@ -50,7 +53,6 @@ pub fn check(
         let main = index + 1 == imported.files.len();
         let ids = file.imports.iter().map(|(statement, file)| (*statement, FileId(*file as u32)));
         checker.imports = ids.collect();
-        checker.source = file.source;
         let part = checker.file(&file.tree, main);
         checker.program.files.push(program::File { source: file.source, part });
         if main {
@@ -73,8 +75,6 @@ struct Checker<'a> {
     files: &'a dyn Files,
     sources: &'a Sources,
     settings: &'a [Setting],
-    /// The file that is being checked.
-    source: crate::span::SourceId,
     /// What its import statements mean.
     imports: BTreeMap<Span, FileId>,
     /// Innermost last.
@@ -83,6 +83,8 @@ struct Checker<'a> {
     frames: Vec<usize>,
     /// The params of the innermost part, in the order written; none until it is checked.
     params: Vec<(SmolStr, Option<Param>)>,
+    /// The shape of rows that is being checked: its literals stand for those of each row.
+    shape: Option<Arc<Shape>>,
     /// The words above the statement that is being checked.
     doc: Option<SmolStr>,
     /// Tables by path.
@@ -105,11 +107,11 @@ impl<'a> Checker<'a> {
             files,
             sources,
             settings,
-            source: crate::span::SourceId(0),
             imports: BTreeMap::new(),
             scopes: vec![],
             frames: vec![],
             params: vec![],
+            shape: None,
             doc: None,
             tables: BTreeMap::new(),
             program: Program::default(),
@@ -137,7 +139,7 @@ impl<'a> Checker<'a> {
             },
             // What could not be understood may be the param.
             Entry::Broken(broken) => broken.name.as_ref().map(|name| name.text.as_str()),
-            Entry::Field(_) => None,
+            Entry::Field(_) | Entry::Rows(_) => None,
         });
         let params: Vec<&str> = params.collect();
         for setting in self.settings.iter().filter(|setting| !params.contains(&setting.name.text.as_str())) {

@@ -17,11 +17,15 @@ pub(super) fn dependencies<'t>(
     let of = |item: &Item<'t>| {
         let mut used = vec![];
         let mut visit = |name: &str| used.extend(declared.get(name));
-        if let Item::Statement(statement) = item {
-            match setting(item) {
+        match item {
+            Item::Statement(statement) => match setting(item) {
                 Some(value) => names_in(value, &mut visit),
                 None => names_in_statement(statement, &mut visit),
+            },
+            Item::Rows(rows) => {
+                rows.shapes().iter().for_each(|shape| names_in_statement(shape.statement(), &mut visit));
             }
+            Item::Broken(_) => {}
         }
         used.sort_unstable();
         used.dedup();
@@ -62,7 +66,7 @@ fn names_in_body(body: &ast::Body, visit: &mut impl FnMut(&str)) {
             Entry::Field(field) if is_word(field) => {}
             Entry::Field(field) => names_in(&field.value, visit),
             Entry::Statement(statement) => names_in_statement(statement, visit),
-            Entry::Broken(_) => {}
+            Entry::Rows(_) | Entry::Broken(_) => {}
         }
     }
 }

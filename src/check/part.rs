@@ -39,6 +39,7 @@ impl<'a> Checker<'a> {
         for entry in &body.entries {
             match entry {
                 Entry::Statement(statement) => items.push(Item::Statement(statement)),
+                Entry::Rows(rows) => items.push(Item::Rows(rows)),
                 Entry::Broken(broken) => items.push(Item::Broken(broken)),
                 Entry::Field(field) => fields.push(field),
             }
@@ -64,7 +65,7 @@ impl<'a> Checker<'a> {
                     TreeStatement::Param { name, .. } => Some((name.text.clone(), None)),
                     _ => None,
                 },
-                Item::Broken(_) => None,
+                Item::Rows(_) | Item::Broken(_) => None,
             })
             .collect();
         self.begin_frame();

@@ -8,6 +8,7 @@ use crate::color::Rgb;
 use crate::diagnostic::Code;
 use crate::schema::KindId;
 use crate::span::{SourceId, Span};
+use crate::syntax::Rows;
 use crate::syntax::ast::{BinaryOp, UnaryOp};
 use smol_str::SmolStr;
 use std::collections::BTreeMap;
@@ -200,6 +201,15 @@ pub enum StatementKind {
         /// How it is made.
         make: Box<Make>,
     },
+    /// Puts a thing into the picture for each row.
+    Rows {
+        /// The rows.
+        rows: Arc<Rows>,
+        /// How things are made, by shape; none where the rows of a shape are checked apart.
+        makes: Vec<Option<Make>>,
+        /// Those that are not all alike, by row.
+        apart: BTreeMap<usize, Statement>,
+    },
     /// Goes through a list.
     For {
         /// The slot of the variable.
@@ -251,6 +261,18 @@ pub enum ExprKind {
     Text(SmolStr),
     /// A colour.
     Color(Rgb),
+    /// A number of the row that is being evaluated.
+    RowNumber {
+        /// Which literal.
+        literal: usize,
+        /// What it is multiplied with: its unit.
+        factor: f64,
+    },
+    /// A colour of the row that is being evaluated.
+    RowColor {
+        /// Which literal.
+        literal: usize,
+    },
     /// A word that the field understands.
     Word(&'static str),
     /// Two or three numbers.
@@ -395,7 +417,7 @@ pub struct Make {
 }
 
 /// What is the same for all things made at one place.
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Written {
     /// The name it is given.
     pub name: Option<SmolStr>,
@@ -403,6 +425,8 @@ pub struct Written {
     pub span: Span,
     /// Where the fields' values stand, in the order of [`Make::fields`].
     pub fields: Box<[Span]>,
+    /// The rows that things are made of here, where these places are those of their shape.
+    pub rows: Option<Arc<Rows>>,
 }
 
 /// Which field of a thing.
@@ -432,6 +456,23 @@ pub enum Base {
     },
     /// Unknown, and reported.
     Invalid,
+}
+
+impl Written {
+    /// Where a place lies in what was made of a row.
+    pub fn place(&self, row: u32, place: Span) -> Span {
+        match &self.rows {
+            Some(rows) => rows.place(row as usize, place),
+            None => place,
+        }
+    }
+}
+
+impl PartialEq for Written {
+    /// Written at one place, under one name.
+    fn eq(&self, other: &Written) -> bool {
+        (&self.name, self.span, &self.fields) == (&other.name, other.span, &other.fields)
+    }
 }
 
 impl Expr {

@@ -4,10 +4,12 @@ use super::program::{Block, StatementKind};
 use super::types::{Kind, Making, Type};
 use super::{Checker, ExprKind, errors, functions};
 use crate::schema;
+use crate::syntax::Rows;
 use crate::syntax::ast::{self, Name, StatementKind as Tree};
 use crate::{color, units};
 use smol_str::SmolStr;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// The names of one body.
 pub(super) struct Scope {
@@ -49,11 +51,12 @@ pub(super) struct Known {
     pub(super) free: bool,
 }
 
-/// A statement, or the name of one that could not be understood.
+/// A statement, many of them, or the name of one that could not be understood.
 #[derive(Clone, Copy)]
 pub(super) enum Item<'t> {
     Statement(&'t ast::Statement),
     Broken(&'t ast::Broken),
+    Rows(&'t Arc<Rows>),
 }
 
 /// A name that was found.
@@ -68,6 +71,7 @@ impl<'t> Item<'t> {
     pub(super) fn name(&self) -> Option<&'t Name> {
         match self {
             Item::Broken(broken) => broken.name.as_ref(),
+            Item::Rows(_) => None,
             Item::Statement(statement) => match &statement.kind {
                 Tree::Thing { name, .. } => name.as_ref(),
                 Tree::Definition { name, .. }

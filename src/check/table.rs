@@ -37,7 +37,7 @@ impl Checker<'_> {
         let path = match from.join(&written.text) {
             Ok(path) => path,
             Err(error) => {
-                self.report(crate::import::unusable(written, &error));
+                self.report(error.diagnostic(&written.text, written.span));
                 return None;
             }
         };
@@ -47,7 +47,7 @@ impl Checker<'_> {
         let found = self.files.read(&path, MAX_TABLE);
         let table = match found {
             Ok(bytes) => crate::asset::table::read(&bytes).map_err(|why| errors::bad_table(written, &why)),
-            Err(error) => Err(crate::import::unusable(written, &error)),
+            Err(error) => Err(error.diagnostic(&written.text, written.span)),
         };
         let id = match table {
             Ok(table) => {

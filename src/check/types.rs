@@ -20,7 +20,7 @@ pub enum Type {
     Text,
     /// A linear colour.
     Color,
-    /// A colour by place.
+    /// A colour by place; a plain colour too, where a value may be either.
     Texture,
     /// A placement.
     Transform,
@@ -174,6 +174,7 @@ impl Type {
             (Type::List(a), Type::List(b)) => Type::list(a.join(b)?),
             (Type::Made(a), Type::Made(b)) => Type::Made(a.join(*b)?),
             (Type::Thing(a), Type::Thing(b)) => Type::Thing(a.join(*b)?),
+            (Type::Color, Type::Texture) | (Type::Texture, Type::Color) => Type::Texture,
             (a, b) if a == b => a.clone(),
             _ => return None,
         })

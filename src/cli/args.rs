@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand};
 use rt_lang::output::Depth;
 use rt_lang::schema::Tonemap;
 use std::path::PathBuf;
-pub use tools::{Check, Completions, Explain, Info, Init, Man, Messages, Reading, Show};
+pub use tools::{Check, Completions, Expand, Explain, Export, Info, Init, Man, Messages, Reading, Show};
 pub use values::Denied;
 use values::{crop, depths, exposure, samples, seed, size, stops, threads, tonemaps};
 
@@ -78,6 +78,10 @@ pub enum Command {
     Explain(Explain),
     /// Tells what is in a scene: parameters, cameras, counts, bounds, files, and what it takes to draw it.
     Info(Info),
+    /// Writes a scene as a flat one, without loops, parts and names, that gives the same picture to the bit.
+    Expand(Expand),
+    /// Writes a scene for another renderer: Mitsuba 3, pbrt-v4 or POV-Ray.
+    Export(Export),
     /// Makes a folder with a first scene to play with.
     Init(Init),
     /// Prints a completion script for a shell.

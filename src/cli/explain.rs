@@ -6,6 +6,7 @@ use super::{Exit, Problem};
 use anstream::{AutoStream, ColorChoice};
 use rt_lang::diagnostic::{Code, Severity};
 use rt_lang::explain::{Example, Piece, Role, page, pieces};
+use rt_lang::syntax::RESERVED;
 use std::io::stdout;
 
 /// Prints the page, or the list.
@@ -133,7 +134,7 @@ fn highlight(line: &str, color: bool) -> String {
             '#' | '0'..='9' => Some(CYAN),
             '@' => Some(YELLOW),
             _ if word(first) && behind.trim_start().starts_with('{') => Some(BLUE),
-            _ if KEYWORDS.contains(&token) => Some(BOLD),
+            _ if RESERVED.contains(&token) => Some(BOLD),
             _ => None,
         };
         text.push_str(&style.map_or(token.to_string(), |style| paint(token, style, true)));
@@ -141,11 +142,6 @@ fn highlight(line: &str, color: bool) -> String {
     }
     text
 }
-
-const KEYWORDS: &[&str] = &[
-    "let", "material", "param", "part", "import", "as", "for", "in", "to", "if", "then", "else", "fn",
-    "assert", "and", "or", "not", "true", "false",
-];
 
 #[cfg(test)]
 mod tests {

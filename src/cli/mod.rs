@@ -11,13 +11,15 @@
 //! | [`interrupt`] | Ctrl-C |
 //! | [`terminal`] | the one writer to standard error |
 //! | [`progress`] | how far a picture is |
-//! | [`build`], [`check`], [`develop`], [`explain`], [`fmt`], [`info`], [`init`], [`manual`] | the commands |
+//! | [`build`], [`check`], [`develop`], [`expand`], [`explain`], [`export`], [`fmt`], [`info`], [`init`], [`manual`] | the commands |
 
 mod args;
 mod build;
 mod check;
 mod develop;
+mod expand;
 mod explain;
+mod export;
 mod files;
 mod info;
 mod init;
@@ -93,6 +95,8 @@ pub fn main() -> ExitCode {
         Command::Check(check) => check::run(&check, terminal, &interrupt),
         Command::Develop(develop) => develop::run(&develop, terminal, &interrupt),
         Command::Explain(explain) => explain::run(&explain),
+        Command::Expand(expand) => expand::run(&expand, terminal, &interrupt),
+        Command::Export(export) => export::run(&export, terminal, &interrupt),
         Command::Info(info) => info::run(&info, terminal),
         Command::Init(init) => init::run(&init),
         Command::Completions(completions) => manual::completions(&completions),

@@ -48,6 +48,8 @@ pub(super) struct GroupPlace {
     pub(super) placement: DAffine3,
     /// What members are made of that name no material.
     pub(super) material: Option<Given>,
+    /// Where in it the textures of members lie that do not say.
+    pub(super) grain: Option<DAffine3>,
 }
 
 /// By how much the indices of what was copied from one [`Built`] to another have grown.
@@ -67,7 +69,8 @@ impl Built {
 
     /// Adds a group that stands where its parent does, until its fields are known.
     pub(super) fn begin_group(&mut self, parent: u32) -> u32 {
-        self.groups.push(GroupPlace { parent, placement: DAffine3::IDENTITY, material: None });
+        let placement = DAffine3::IDENTITY;
+        self.groups.push(GroupPlace { parent, placement, material: None, grain: None });
         self.groups.len() as u32 - 1
     }
 
@@ -76,6 +79,7 @@ impl Built {
         let place = &mut self.groups[group as usize];
         place.placement = placement(made);
         place.material = material(made);
+        place.grain = grain(made);
     }
 
     /// A link of the chain of uses; the same again where it was added just now, as in a loop.
@@ -162,11 +166,19 @@ pub(super) fn placement(made: &Made) -> DAffine3 {
     if !matches!(made.kind.get().category, Category::Shape | Category::Group) {
         return DAffine3::IDENTITY;
     }
-    let place = made.given(placed::PLACE).map_or(DAffine3::IDENTITY, |(place, _)| place);
-    match made.given(placed::AT) {
-        Some((at, _)) => DAffine3::from_translation(at) * place,
+    let place = made.read(placed::PLACE).unwrap_or(DAffine3::IDENTITY);
+    match made.read(placed::AT) {
+        Some(at) => DAffine3::from_translation(at) * place,
         None => place,
     }
+}
+
+/// Where the space of textures lies that a thing's own field gives.
+pub(super) fn grain(made: &Made) -> Option<DAffine3> {
+    if !matches!(made.kind.get().category, Category::Shape | Category::Group) {
+        return None;
+    }
+    made.given(placed::GRAIN).map(|(grain, _)| grain)
 }
 
 /// The material that a thing's own field gives.

@@ -73,10 +73,10 @@ impl<'p> Evaluator<'p> {
             });
         }
         let base = base.map(flat);
-        let span = make.written.span;
+        let span = self.here(make.written.span);
         // What a prototype holds, the thing holds; a group adds its own.
         let group = base.as_ref().and_then(|base| base.group.clone());
-        Made { kind, span, mask, values, written: make.written.clone(), base, group }
+        Made { kind, span, mask, values, written: make.written.clone(), row: self.row_index(), base, group }
     }
 
     /// Puts a thing into the picture. Gives what its name means, where that is wanted.
@@ -120,10 +120,8 @@ impl<'p> Evaluator<'p> {
         let (outer, group, level) = (self.link, self.group, self.buffers.len() - 1);
         let aims = level > 0 && made.values.iter().any(|value| matches!(value, Value::Thing(_)));
         let out = self.out();
-        let mut link = out.link(span, outer);
-        if let Some(base) = &made.base {
-            link = out.link(base.span, link);
-        }
+        // The text of a prototype is not where the thing was put into the picture.
+        let link = out.link(span, outer);
         out.aims |= aims;
         out.things.push(Stored { made: made.clone(), group, link });
         Some(made)
@@ -264,9 +262,19 @@ fn flat(made: Rc<Made>) -> Rc<Made> {
     }
     let written = crate::check::Written {
         name: made.written.name.clone(),
-        span: made.written.span,
+        span: made.span,
         fields: spans.into(),
+        rows: None,
     };
     let (kind, span, group) = (made.kind, made.span, made.group.clone());
-    Rc::new(Made { kind, span, mask, values, written: std::sync::Arc::new(written), base: None, group })
+    Rc::new(Made {
+        kind,
+        span,
+        mask,
+        values,
+        written: std::sync::Arc::new(written),
+        row: 0,
+        base: None,
+        group,
+    })
 }

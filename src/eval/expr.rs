@@ -3,6 +3,7 @@
 use super::list::Items;
 use super::{Evaluator, List, Value, errors};
 use crate::check::{Expr, ExprKind, Function};
+use crate::color;
 use crate::math::DVec3;
 use crate::span::Span;
 use crate::syntax::ast::{BinaryOp, UnaryOp};
@@ -20,6 +21,12 @@ impl Evaluator<'_> {
             ExprKind::Bool(value) => Value::Bool(*value),
             ExprKind::Text(text) => Value::Text(text.clone()),
             ExprKind::Color(color) => Value::Color(*color),
+            ExprKind::RowNumber { literal, factor } => {
+                self.finite(Value::Number(self.row_literal(*literal) * factor), span)
+            }
+            ExprKind::RowColor { literal } => {
+                Value::Color(color::from_bits(self.row_literal(*literal) as u32))
+            }
             ExprKind::Word(word) => Value::Word(word),
             ExprKind::Tuple(parts) => {
                 let mut tuple = DVec3::ZERO;

@@ -90,6 +90,9 @@ pub(super) fn call(
             transform(DAffine3::from_translation(DVec3::new(*x, *y, *z)))
         }
         (Move, [Tuple(v)]) => transform(DAffine3::from_translation(*v)),
+        (Matrix, [Tuple(x), Tuple(y), Tuple(z), Tuple(origin)]) => {
+            transform(DAffine3::from_cols(*x, *y, *z, *origin))
+        }
         // Types were checked, so only what is invalid already comes here.
         _ => Ok(Value::Invalid),
     }

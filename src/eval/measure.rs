@@ -46,7 +46,8 @@ impl Evaluator<'_> {
             }
             Value::Part(part) => {
                 let outer = self.begin_buffer();
-                let written = crate::check::Written { name: None, span: part.span, fields: [].into() };
+                let written =
+                    crate::check::Written { name: None, span: part.span, fields: [].into(), rows: None };
                 self.draw_part_value(part, std::sync::Arc::new(written), &[span], false);
                 self.bounds_of_buffer(outer, span)
             }
@@ -83,6 +84,7 @@ impl Evaluator<'_> {
             let thing = Thing {
                 made: stored.made.clone(),
                 world_from_object: carried * placement(&stored.made),
+                world_from_grain: None,
                 material: None,
                 origin: OriginId(0),
                 hidden: false,

@@ -34,11 +34,13 @@ pub use value::{Given, Made, PartValue, Placed, ThingId, Value};
 use crate::check::{Expr, ExprKind, Part, Program};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::span::Span;
+use crate::syntax::Rows;
 use built::{Built, NONE};
 use frame::Frame;
 use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// Evaluates a program. `measure` says where a thing is, for `bounds(…)`.
 pub fn eval(program: &Program, limits: Limits, measure: Measure) -> (Things, Vec<Diagnostic>) {
@@ -76,6 +78,8 @@ struct Evaluator<'p> {
     levels: usize,
     /// How many expressions are around.
     depth: usize,
+    /// The rows that are being evaluated, and which of them is.
+    row: Option<(Arc<Rows>, u32)>,
     /// Whether this is an imported file, whose camera and render blocks are ignored.
     imported: bool,
     diagnostics: Vec<Diagnostic>,
@@ -110,6 +114,7 @@ impl<'p> Evaluator<'p> {
             uses: vec![],
             levels: 0,
             depth: 0,
+            row: None,
             imported: false,
             diagnostics: vec![],
             reported: BTreeSet::new(),
@@ -138,6 +143,7 @@ impl<'p> Evaluator<'p> {
 
     /// Reports what is wrong, once for each place, with the uses that led there.
     fn report(&mut self, mut diagnostic: Diagnostic) -> Value {
+        diagnostic.move_places(|place| self.here(place));
         if self.reported.insert((diagnostic.code, diagnostic.primary.span)) {
             let place = diagnostic.primary.span;
             diagnostic.uses = self.uses.iter().copied().filter(|span| !span.contains(place)).collect();

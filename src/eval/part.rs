@@ -231,7 +231,7 @@ fn as_group(placed: [Option<Given>; PLACED.len()], written: &Written) -> Made {
             spans.push(span);
         }
     }
-    let own = Written { name: written.name.clone(), span: written.span, fields: spans.into() };
+    let own = Written { name: written.name.clone(), span: written.span, fields: spans.into(), rows: None };
     let (span, written) = (own.span, Arc::new(own));
-    Made { kind: group::KIND, span, mask, values, written, base: None, group: None }
+    Made { kind: group::KIND, span, mask, values, written, row: 0, base: None, group: None }
 }

@@ -1,8 +1,11 @@
 //! Statements.
 
 use super::{Evaluator, Given, Value, errors};
-use crate::check::{Block, Expr, Statement, StatementKind};
+use crate::check::{Block, Expr, Make, Statement, StatementKind};
 use crate::span::Span;
+use crate::syntax::Rows;
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 impl Evaluator<'_> {
     /// Evaluates the statements of a scope. With `definitions` only what is named: nothing else of an imported file
@@ -59,6 +62,7 @@ impl Evaluator<'_> {
                     self.frame.set(*slot, value);
                 }
             }
+            StatementKind::Rows { rows, makes, apart } => self.rows(rows, makes, apart),
             StatementKind::For { slot, list, body, cost } => self.repeat(*slot, list, body, *cost, span),
             StatementKind::If { condition, then, otherwise } => match self.expr(condition) {
                 Value::Bool(true) => self.block(then, false),
@@ -75,6 +79,41 @@ impl Evaluator<'_> {
             let list = if statement.off { &mut self.out().off } else { &mut self.out().solo };
             list.push(id);
         }
+    }
+
+    /// Things that differ in their literals only.
+    fn rows(&mut self, rows: &Arc<Rows>, makes: &[Option<Make>], apart: &BTreeMap<usize, Statement>) {
+        let outer = self.row.take();
+        for row in 0..rows.len() {
+            if self.halted {
+                break;
+            }
+            let shape = rows.shape(row);
+            if let Some(make) = &makes[shape] {
+                self.row = Some((rows.clone(), row as u32));
+                let span = self.here(rows.shapes()[shape].statement().span);
+                self.draw(make, span, false);
+                self.row = None;
+            } else if let Some(statement) = apart.get(&row) {
+                self.statement(statement, false);
+            }
+        }
+        self.row = outer;
+    }
+
+    /// A literal of the row that is being evaluated.
+    pub(super) fn row_literal(&self, literal: usize) -> f64 {
+        self.row.as_ref().map_or(f64::NAN, |(rows, row)| rows.value(*row as usize, literal))
+    }
+
+    /// Which row is being evaluated.
+    pub(super) fn row_index(&self) -> u32 {
+        self.row.as_ref().map_or(0, |(_, row)| *row)
+    }
+
+    /// Where a place lies in the row that is being evaluated.
+    pub(super) fn here(&self, place: Span) -> Span {
+        self.row.as_ref().map_or(place, |(rows, row)| rows.place(*row as usize, place))
     }
 
     fn repeat(&mut self, slot: usize, list: &Expr, body: &Block, cost: u64, span: Span) {

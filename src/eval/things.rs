@@ -1,6 +1,6 @@
 //! What evaluating gives: everything that stands in the picture.
 
-use super::built::{Built, NONE, material, placement};
+use super::built::{Built, NONE, grain, material, placement};
 use super::defaults::Defaults;
 use super::{Given, Made, Origins, Read, ThingId, Value};
 use crate::math::DAffine3;
@@ -14,8 +14,8 @@ use std::rc::Rc;
 #[derive(Debug)]
 pub struct Things {
     built: Built,
-    /// By group: from its space to the world's, and what its members are made of by default.
-    groups: Vec<(DAffine3, Option<Given>)>,
+    /// By index.
+    groups: Vec<Group>,
     /// Which are left out: `@off`, or not `@solo` where something is. None where nothing is.
     hidden: Option<Vec<bool>>,
     /// Where each came from.
@@ -26,6 +26,17 @@ pub struct Things {
     pub incomplete: bool,
 }
 
+/// What a group gives to its members.
+#[derive(Clone, Debug, Default)]
+struct Group {
+    /// From its space to the world's.
+    world_from_group: DAffine3,
+    /// What they are made of by default.
+    material: Option<Given>,
+    /// From the space of their textures to the world's by default.
+    world_from_grain: Option<DAffine3>,
+}
+
 /// One thing of the picture: a shape, a light or a block.
 #[derive(Clone, Debug)]
 pub struct Thing {
@@ -33,6 +44,8 @@ pub struct Thing {
     pub made: Rc<Made>,
     /// Where it stands: its own placement and that of the groups around it.
     pub world_from_object: DAffine3,
+    /// Where the space of its texture lies, if not where its own does.
+    pub world_from_grain: Option<DAffine3>,
     /// Its material, or else that of the innermost group that has one.
     pub material: Option<Given>,
     /// Where it came from.
@@ -44,13 +57,21 @@ pub struct Thing {
 impl Things {
     /// Takes in what was built.
     pub(super) fn new(mut built: Built, incomplete: bool) -> Things {
-        let mut groups: Vec<(DAffine3, Option<Given>)> = Vec::with_capacity(built.groups.len());
+        let mut groups: Vec<Group> = Vec::with_capacity(built.groups.len());
         for group in &built.groups {
-            let (world, inherited) = match group.parent {
-                NONE => (DAffine3::IDENTITY, None),
+            let around = match group.parent {
+                NONE => Group::default(),
                 parent => groups[parent as usize].clone(),
             };
-            groups.push((world * group.placement, group.material.clone().or(inherited)));
+            let world_from_group = around.world_from_group * group.placement;
+            groups.push(Group {
+                world_from_group,
+                material: group.material.clone().or(around.material),
+                world_from_grain: group
+                    .grain
+                    .map(|grain| world_from_group * grain)
+                    .or(around.world_from_grain),
+            });
         }
         let hidden = hidden(&built);
         let origins = Origins::new(std::mem::take(&mut built.links));
@@ -72,13 +93,21 @@ impl Things {
         (0..self.len()).map(|index| self.get(index))
     }
 
+    /// Those of the kinds that are wanted, each with its index.
+    pub fn of(&self, wanted: impl Fn(KindId) -> bool) -> impl Iterator<Item = (usize, Thing)> {
+        let stored = self.built.things.iter().enumerate();
+        stored.filter(move |(_, stored)| wanted(stored.made.kind)).map(|(index, _)| (index, self.get(index)))
+    }
+
     /// The thing at an index.
     pub fn get(&self, index: usize) -> Thing {
         let stored = &self.built.things[index];
-        let (world, inherited) = &self.groups[stored.group as usize];
+        let around = &self.groups[stored.group as usize];
+        let grain = grain(&stored.made).map(|grain| around.world_from_group * grain);
         Thing {
-            world_from_object: *world * placement(&stored.made),
-            material: material(&stored.made).or_else(|| inherited.clone()),
+            world_from_object: around.world_from_group * placement(&stored.made),
+            world_from_grain: grain.or(around.world_from_grain),
+            material: material(&stored.made).or_else(|| around.material.clone()),
             made: stored.made.clone(),
             origin: OriginId(stored.link),
             hidden: self.hidden.as_ref().is_some_and(|hidden| hidden[index]),
@@ -98,8 +127,8 @@ impl Things {
 
     /// A field of a thing: as given, or else its default.
     pub fn read<T: Read>(&self, made: &Made, key: Key<T>) -> T::Out {
-        match made.given(key) {
-            Some((value, _)) => value,
+        match made.read(key) {
+            Some(value) => value,
             None => self.defaults.read(made.kind, key),
         }
     }

@@ -69,6 +69,8 @@ pub struct Made {
     pub(super) values: SmallVec<[Value; 2]>,
     /// What is the same for all that is made here.
     pub(super) written: Arc<Written>,
+    /// Of which row, if it was made of rows.
+    pub(super) row: u32,
     /// What it was made from.
     pub(super) base: Option<Rc<Made>>,
     /// What a group holds.
@@ -140,20 +142,29 @@ pub struct Given {
 impl Made {
     /// A thing of a kind with nothing given.
     pub fn new(kind: KindId, span: Span) -> Made {
-        let written = Arc::new(Written { name: None, span, fields: [].into() });
-        Made { kind, span, mask: 0, values: SmallVec::new(), written, base: None, group: None }
+        let written = Arc::new(Written { name: None, span, fields: [].into(), rows: None });
+        Made { kind, span, mask: 0, values: SmallVec::new(), written, row: 0, base: None, group: None }
     }
 
     /// The field at an index of [`KindId::fields`] as given here or by the prototype.
     pub(super) fn find(&self, index: usize) -> Option<(&Value, Span)> {
+        let (made, rank) = self.giver(index)?;
+        Some((&made.values[rank], made.written.place(made.row, made.written.fields[rank])))
+    }
+
+    /// Which of this thing and its prototypes gives the field at an index, as which of its values.
+    fn giver(&self, index: usize) -> Option<(&Made, usize)> {
         let mut made = self;
-        loop {
-            if made.mask >> index & 1 == 1 {
-                let rank = (made.mask & ((1 << index) - 1)).count_ones() as usize;
-                return Some((&made.values[rank], made.written.fields[rank]));
-            }
+        while made.mask >> index & 1 == 0 {
             made = made.base.as_deref()?;
         }
+        Some((made, (made.mask & ((1 << index) - 1)).count_ones() as usize))
+    }
+
+    /// A field as given, without its place, which takes time to find.
+    pub(super) fn read<T: Read>(&self, key: Key<T>) -> Option<T::Out> {
+        let (made, rank) = self.giver(key.index(self.kind))?;
+        T::read(&made.values[rank])
     }
 
     /// A field as given, with its place; none where it is not given, or has an error.

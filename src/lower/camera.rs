@@ -14,6 +14,9 @@ const THREE_QUARTER: DVec3 = DVec3::new(0.55, 0.42, 1.0);
 /// Room left around what a placed camera frames.
 const MARGIN: f64 = 1.08;
 
+/// The greatest cosine between two unit vectors that counts as a right angle: rounding.
+const UPRIGHT: f64 = 2e-15;
+
 impl Lowering<'_> {
     /// The camera, and the exposure it asks for; none where something is wrong.
     pub(super) fn camera(
@@ -37,6 +40,10 @@ impl Lowering<'_> {
         };
         let [width, height] = size.unwrap_or([4, 3]).map(f64::from);
         let half_extent = DVec2::new(half_width, half_width * height / width);
+
+        self.out.marks.camera = blocks.camera.map(|thing| thing.made.span);
+        self.out.marks.from = made.given(camera::FROM).map(|(_, span)| span);
+        self.out.marks.look = made.given(camera::LOOK).map(|(_, span)| span);
 
         let (center, radius) = self.middle();
         let look = match made.given(camera::LOOK) {
@@ -166,7 +173,13 @@ impl Lowering<'_> {
             // Straight up or down, as on a map: north, −z, is at the top.
             (None, None) => parallel_free(forward, DVec3::NEG_Z),
         }?;
-        Some((right, right.cross(forward)))
+        // One that already stands upright is kept, so that a camera that is written out and read again keeps its
+        // bits. To the right is then the same function of the two in either case.
+        let up = match unit(up).filter(|up| up.dot(forward).abs() <= UPRIGHT) {
+            Some(up) => up,
+            None => unit(right.cross(forward))?,
+        };
+        Some((unit(forward.cross(up))?, up))
     }
 
     /// Radius of the lens, and the distance that is sharp.
@@ -177,6 +190,7 @@ impl Lowering<'_> {
             Some((Focus::Aim(aim), span)) => (self.aim(aim, span)? - from).dot(forward),
             None => (look - from).dot(forward),
         };
+        self.out.marks.focus = Some(focus.as_ref().map_or(lens.span, |(_, span)| *span));
         if !(distance > 0.0 && distance.is_finite()) {
             let span = focus.map_or(lens.span, |(_, span)| span);
             self.report(errors::focus_behind(span));

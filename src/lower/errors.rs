@@ -2,7 +2,6 @@
 
 use super::MAX_PIXELS;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::files::FileError;
 use crate::schema::camera;
 use crate::span::{SourceId, Span};
 
@@ -87,22 +86,6 @@ pub(super) fn textured_power(span: Span, color: Span) -> Diagnostic {
         .help("how much a texture leaves of it is not known: give `radiance: 1W/m2` in its place")
 }
 
-/// A file that cannot be had. `written` is its path in the text.
-pub(super) fn file(written: &str, error: FileError, span: Span) -> Diagnostic {
-    let (label, help) = match error {
-        FileError::Missing => {
-            ("no such file".to_string(), "paths start at the folder of the file they stand in")
-        }
-        FileError::Outside => (
-            "not below the root folder".to_string(),
-            "a scene reads only files below its root folder; choose a wider one with `--root`",
-        ),
-        FileError::TooLarge(most) => (format!("more than {most} bytes"), "store it smaller"),
-        FileError::Unreadable(why) => (why, "look at the file's name and permissions"),
-    };
-    Diagnostic::new(Code::E0501, format!("`{written}` cannot be read"), span).at(label).help(help)
-}
-
 pub(super) fn no_picture(written: &str, why: &str, span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0501, format!("`{written}` {why}"), span)
         .at("not usable as a picture")
@@ -170,14 +153,6 @@ pub(super) fn too_many_pixels(size: [u32; 2], span: Option<Span>) -> Diagnostic 
     let message =
         format!("{} × {} pixels are more than {} million", size[0], size[1], MAX_PIXELS / 1_000_000);
     Diagnostic::new(Code::E0406, message, span.unwrap_or_else(start)).at("too large a picture")
-}
-
-pub(super) fn camera_inside(camera: Option<Span>, solid: Span) -> Diagnostic {
-    let place = camera.unwrap_or(solid);
-    Diagnostic::new(Code::W0601, "the camera is inside a solid, and sees only that", place)
-        .at("inside")
-        .label(solid, "this solid")
-        .help("move the camera out, or make the solid smaller")
 }
 
 pub(super) fn looks_at_itself(from: Span, look: Option<Span>) -> Diagnostic {

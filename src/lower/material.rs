@@ -9,6 +9,7 @@ use crate::math::{DVec3, PI, ln};
 use crate::scene::{Material, MaterialId, Paint, Shape};
 use crate::schema::{self, Key, dielectric, diffuse, emitter, metal, mirror, plastic};
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 /// The materials of a scene, each once.
 #[derive(Default)]
@@ -16,6 +17,9 @@ pub(super) struct Materials {
     all: Vec<Material>,
     /// By canonical bytes.
     known: BTreeMap<Vec<u8>, MaterialId>,
+    /// By the thing that several surfaces share, which lives as long as the things do; what is made of nothing
+    /// stands under none.
+    shared: BTreeMap<Option<*const Made>, MaterialId>,
 }
 
 impl Materials {
@@ -31,12 +35,37 @@ impl Materials {
         &self.all[id.0 as usize]
     }
 
+    /// The material of surfaces that were given this, if it was remembered.
+    pub(super) fn known(&self, given: Option<&Given>) -> Option<MaterialId> {
+        self.shared.get(&shared(given)?).copied()
+    }
+
+    /// Remembers the material of surfaces that were given this, where others may be given the same.
+    pub(super) fn remember(&mut self, given: Option<&Given>, id: MaterialId) {
+        if let Some(key) = shared(given) {
+            self.shared.insert(key, id);
+        }
+    }
+
     pub(super) fn all(&self) -> impl Iterator<Item = &Material> {
         self.all.iter()
     }
 
     pub(super) fn finish(self) -> Vec<Material> {
         self.all
+    }
+}
+
+/// What surfaces share that have the same material. What glows may depend on the surface.
+fn shared(given: Option<&Given>) -> Option<Option<*const Made>> {
+    /// The thing that is being lowered has it twice: as its field, and as what is asked for.
+    const OWN: usize = 2;
+    match given.map(|given| &given.value) {
+        None => Some(None),
+        Some(Value::Made(made)) if made.kind != emitter::KIND && Rc::strong_count(made) > OWN => {
+            Some(Some(Rc::as_ptr(made)))
+        }
+        Some(_) => None,
     }
 }
 
@@ -69,7 +98,8 @@ pub(super) fn lower(
         let absorption = |channel: f64| if channel >= 1.0 { 0.0 } else { -ln(channel) / depth };
         Material::Dielectric {
             ior: things.read(made, dielectric::IOR),
-            absorption: DVec3::new(absorption(tint.x), absorption(tint.y), absorption(tint.z)),
+            absorption: DVec3::new(absorption(tint.x), absorption(tint.y), absorption(tint.z))
+                + things.read(made, dielectric::ABSORPTION),
             alpha: alpha(things.read(made, dielectric::ROUGHNESS)),
         }
     } else if kind == metal::KIND {

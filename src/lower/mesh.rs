@@ -6,7 +6,7 @@ use crate::asset::Mesh;
 use crate::asset::mesh::MOST_TRIANGLES;
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Thing, Things};
-use crate::files::{FilePath, Files};
+use crate::files::{Contents, FileError, FilePath, Files};
 use crate::math::{DAffine3, DVec3};
 use crate::scene::Shape;
 use crate::scene::shape::Instance;
@@ -40,6 +40,15 @@ impl<'f> Meshes<'f> {
         Meshes { files, sources, read: RefCell::default() }
     }
 
+    /// Says where they were read.
+    pub(super) fn name(&self, contents: &mut Contents) {
+        for (path, found) in &self.read.borrow().files {
+            if let Ok(mesh) = found {
+                contents.add(mesh.hash(), path);
+            }
+        }
+    }
+
     /// Lowers a mesh.
     pub(super) fn lower(&self, things: &Things, thing: &Thing) -> Result<Shape, Box<Diagnostic>> {
         let made = &thing.made;
@@ -57,7 +66,7 @@ impl<'f> Meshes<'f> {
     }
 
     fn file(&self, file: &str, span: Span) -> Result<Arc<Mesh>, Box<Diagnostic>> {
-        let refuse = |error| Box::new(errors::file(file, error, span));
+        let refuse = |error: FileError| Box::new(error.diagnostic(file, span));
         let path = self.sources.get(span.source).path.join(file).map_err(refuse)?;
         let mut read = self.read.borrow_mut();
         let found = match read.files.get(&path) {

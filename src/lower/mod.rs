@@ -3,6 +3,7 @@
 
 mod camera;
 mod errors;
+mod lights;
 mod material;
 mod mesh;
 mod shape;
@@ -12,11 +13,11 @@ mod texture;
 use crate::color::Rgb;
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Aim, Reach, Thing, ThingId, Things};
-use crate::files::Files;
-use crate::math::{DAffine3, DVec3, PI, sin};
-use crate::scene::shape::Bounds;
+use crate::files::{Contents, Files};
+use crate::math::{DAffine3, PI, sin};
+use crate::scene::shape::{Bounds, Placed};
 use crate::scene::{
-    Develop, FrameId, Light, Material, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace,
+    Develop, FrameId, Light, Material, MaterialId, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace,
 };
 use crate::schema::{self, Category, DEFAULT_SAMPLES, KindId, light, render, sun};
 use crate::source::Sources;
@@ -56,6 +57,25 @@ pub struct Lowered {
     pub diagnostics: Vec<Diagnostic>,
     /// Where settings stand that only a finished picture can judge.
     pub places: Places,
+    /// Where the rest of the scene stands.
+    pub marks: Marks,
+    /// Where its pictures and meshes were read.
+    pub contents: Contents,
+}
+
+/// Where those parts of a scene came from that are no primitives. What was chosen for the user has no place.
+#[derive(Clone, Debug, Default)]
+pub struct Marks {
+    /// The camera's block.
+    pub camera: Option<Span>,
+    /// Where it stands: its `from`.
+    pub from: Option<Span>,
+    /// What it looks at: its `look`.
+    pub look: Option<Span>,
+    /// The lens, or what it is focused on.
+    pub focus: Option<Span>,
+    /// By the index of a light in the scene.
+    pub lights: Vec<Option<OriginId>>,
 }
 
 /// Where settings stand that only a finished picture can judge; none where the source does not give them.
@@ -99,7 +119,8 @@ pub fn lower(
     lowering.say_defaults();
     if let (Some(camera), Some(size)) = (camera, size) {
         let (trace, tonemap) = lowering.trace(&blocks, size);
-        lowering.warn_inside(camera.0.position, blocks.camera);
+        lowering.textures.name(&mut lowering.out.contents);
+        meshes.name(&mut lowering.out.contents);
         let (textures, images) = lowering.textures.finish();
         lowering.out.scene = Some(Scene {
             primitives: lowering.primitives,
@@ -145,8 +166,8 @@ pub fn measure(things: &Things, thing: &Thing, meshes: &Meshes) -> Result<Reach,
 
 /// The blocks that are not left out, each with its index among the things.
 fn written_blocks(things: &Things) -> Vec<(usize, Thing)> {
-    let block = |thing: &Thing| thing.made.kind.get().category == Category::Block && !thing.hidden;
-    things.iter().enumerate().filter(|(_, thing)| block(thing)).collect()
+    let blocks = things.of(|kind| kind.get().category == Category::Block);
+    blocks.filter(|(_, thing)| !thing.hidden).collect()
 }
 
 struct Lowering<'a> {
@@ -158,7 +179,7 @@ struct Lowering<'a> {
     materials: Materials,
     textures: Textures<'a>,
     meshes: &'a Meshes<'a>,
-    frames: Vec<DAffine3>,
+    frames: Vec<Placed>,
     lights: Vec<Light>,
     /// By thing.
     extents: Vec<Extent>,
@@ -232,32 +253,6 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    /// A lamp that shines into a cone, in the place that was found for it.
-    fn spot(&mut self, index: usize, thing: &Thing, aim: Aim, span: Span) {
-        let Extent::Lamp(Bounds { min: position, .. }) = self.extents[index] else { return };
-        let target = match aim {
-            Aim::Point(point) => Some(thing.world_from_object.transform_point3(point)),
-            Aim::Thing(_) => self.aim(aim, span),
-        };
-        let Some(target) = target else { return };
-        let Some(direction) = shape::unit(target - position) else {
-            return self.report(self.used_at(thing, errors::aimed_at_itself(span)));
-        };
-        let made = &thing.made;
-        let Some((cone, _)) = made.given(light::CONE) else { return };
-        let outer = 0.5 * cone;
-        let inner = (1.0 - self.things.read(made, light::SOFT)) * outer;
-        let power = self.things.read(made, light::COLOR) * self.things.read(made, light::POWER);
-        // Over the cosine the smooth step has the mean ½, so the flux is 2π(1 − (cos inner + cos outer) / 2) times
-        // the intensity. The half angles keep it exact for narrow cones.
-        let height = |angle: f64| {
-            let sine = sin(0.5 * angle);
-            2.0 * sine * sine
-        };
-        let intensity = power / (PI * (height(inner) + height(outer)));
-        self.add_light(thing, Light::Spot { position, direction, intensity, inner, outer });
-    }
-
     /// What is left out is not drawn, and still has its place for those that aim at it.
     fn hidden(&mut self, index: usize, thing: &Thing) {
         if thing.made.is_sound()
@@ -278,85 +273,40 @@ impl<'a> Lowering<'a> {
         };
         let extent = shape.bounds().map_or(Extent::Endless, Extent::Box);
         self.extents[index] = extent;
-        let material = match &thing.material {
-            Some(given) => match material::lower(&mut self.textures, self.things, given, &shape) {
-                Ok(material) => material,
-                Err(diagnostic) => return self.report(self.used_at(thing, *diagnostic)),
-            },
-            None => {
-                self.bare += 1;
-                material::bare(self.things)
-            }
+        let material = match self.material(thing, &shape) {
+            Ok(material) => material,
+            Err(diagnostic) => return self.report(self.used_at(thing, *diagnostic)),
         };
-        let frame = material.texture().map(|_| {
-            self.frames.push(thing.world_from_object.inverse());
-            FrameId(self.frames.len() as u32 - 1)
-        });
+        let mut frame = None;
+        if self.materials.get(material).texture().is_some() {
+            let world_from_grain = thing.world_from_grain.unwrap_or(thing.world_from_object);
+            match shape::placed(world_from_grain, thing.made.span) {
+                Ok(placed) => self.frames.push(placed),
+                Err(diagnostic) => return self.report(self.used_at(thing, *diagnostic)),
+            }
+            frame = Some(FrameId(self.frames.len() as u32 - 1));
+        }
         self.add_surface(shape, material, frame, thing.origin);
     }
 
-    fn add_surface(&mut self, shape: Shape, material: Material, frame: Option<FrameId>, origin: OriginId) {
-        let material = self.materials.add(material);
+    /// What a thing is made of, lowered once where things share it.
+    fn material(&mut self, thing: &Thing, shape: &Shape) -> Result<MaterialId, Box<Diagnostic>> {
+        let given = thing.material.as_ref();
+        self.bare += usize::from(given.is_none());
+        if let Some(known) = self.materials.known(given) {
+            return Ok(known);
+        }
+        let material = match given {
+            Some(given) => material::lower(&mut self.textures, self.things, given, shape)?,
+            None => material::bare(self.things),
+        };
+        let id = self.materials.add(material);
+        self.materials.remember(given, id);
+        Ok(id)
+    }
+
+    fn add_surface(&mut self, shape: Shape, material: MaterialId, frame: Option<FrameId>, origin: OriginId) {
         self.primitives.push(Primitive { shape, material, frame, origin });
-    }
-
-    /// A lamp: a point, or a glowing sphere.
-    fn lamp(&mut self, index: usize, thing: &Thing) {
-        let made = &thing.made;
-        let power = self.things.read(made, light::COLOR) * self.things.read(made, light::POWER);
-        let radius = self.things.read(made, light::RADIUS);
-        let at = self.things.read(made, light::AT);
-        let position = thing.world_from_object.transform_point3(at);
-        if !position.is_finite() {
-            return self.report(self.used_at(thing, errors::not_finite_place(made.span)));
-        }
-        self.extents[index] = Extent::Lamp(Bounds { min: position, max: position });
-        if made.given(light::AIM).is_some() {
-            // What it is aimed at may be found only later.
-            return;
-        }
-        if radius == 0.0 {
-            let intensity = power / (4.0 * PI);
-            return self.add_light(thing, Light::Point { position, intensity });
-        }
-        let placement = thing.world_from_object * crate::math::DAffine3::from_translation(at);
-        match shape::ball(placement, radius, made.span) {
-            Ok(shape) => {
-                if let Some(bounds) = shape.bounds() {
-                    self.extents[index] = Extent::Lamp(bounds);
-                }
-                let radiance = power / (PI * shape.area());
-                if !radiance.is_finite() {
-                    return self.report(self.used_at(thing, errors::glows_beyond(made.span)));
-                }
-                self.add_surface(shape, Material::Emitter { radiance, pattern: None }, None, thing.origin);
-            }
-            Err(diagnostic) => self.report(self.used_at(thing, *diagnostic)),
-        }
-    }
-
-    fn sun(&mut self, thing: &Thing) {
-        let from = self.things.read(&thing.made, sun::FROM);
-        let Some(direction) = shape::unit(thing.world_from_object.matrix3 * from) else {
-            let span = thing.made.given(sun::FROM).map_or(thing.made.span, |(_, span)| span);
-            return self.report(self.used_at(thing, errors::no_direction("from", span)));
-        };
-        let color = self.things.read(&thing.made, sun::COLOR);
-        let irradiance = color * self.things.read(&thing.made, sun::IRRADIANCE);
-        let radius = 0.5 * self.things.read(&thing.made, sun::ANGLE);
-        self.add_light(thing, Light::Sun { direction, irradiance, radius });
-    }
-
-    fn add_light(&mut self, thing: &Thing, light: Light) {
-        let finite = match light {
-            Light::Point { intensity, .. } | Light::Spot { intensity, .. } => intensity.is_finite(),
-            Light::Sun { irradiance, .. } => irradiance.is_finite(),
-            Light::Sky { radiance, .. } => radiance.is_finite(),
-        };
-        match finite {
-            true => self.lights.push(light),
-            false => self.report(self.used_at(thing, errors::glows_beyond(thing.made.span))),
-        }
     }
 
     /// Finds the one camera, lens and render block.
@@ -481,24 +431,8 @@ impl<'a> Lowering<'a> {
                 .any(|thing| thing.made.kind.get().category == Category::Light || !thing.made.is_sound());
             if !lights {
                 self.lights.push(Light::Sky { radiance: Rgb::ONE, panorama: None });
+                self.out.marks.lights.push(None);
                 self.out.notes.push("no light: a soft white sky, as `sky {}`".into());
-            }
-        }
-    }
-
-    /// Warns of a camera that sees nothing but the inside of a solid.
-    fn warn_inside(&mut self, position: DVec3, camera: Option<&Thing>) {
-        let inside = self.primitives.iter().find(|primitive| {
-            let opaque = !matches!(self.materials.get(primitive.material), Material::Dielectric { .. });
-            opaque && primitive.shape.contains(position)
-        });
-        if let Some(primitive) = inside {
-            let chain = self.things.origins.chain(primitive.origin);
-            let place = camera.map(|camera| {
-                camera.made.given(crate::schema::camera::FROM).map_or(camera.made.span, |(_, span)| span)
-            });
-            if let Some(&solid) = chain.last() {
-                self.report(errors::camera_inside(place, solid));
             }
         }
     }

@@ -132,7 +132,10 @@ fn quadric(
     Ok(Shape::Quadric(Box::new(quadric)))
 }
 
-pub(super) fn placed(world_from_object: DAffine3, span: Span) -> Result<Placed, Box<Diagnostic>> {
+pub(super) fn placed(map: DAffine3, span: Span) -> Result<Placed, Box<Diagnostic>> {
+    // Zeros lose their sign, which would change the scene's hash and nothing else.
+    let translation = map.translation + DVec3::ZERO;
+    let world_from_object = DAffine3 { matrix3: map.matrix3 + DMat3::ZERO, translation };
     let object_from_world = invert(world_from_object).ok_or_else(|| Box::new(errors::flattened(span)))?;
     Ok(Placed { world_from_object, object_from_world })
 }
@@ -144,8 +147,30 @@ fn invert(map: DAffine3) -> Option<DAffine3> {
     sound.then_some(inverse)
 }
 
-/// The vector of length 1 in the same direction, if there is one.
+/// The vector of length 1 in the same direction, if there is one. One that has length 1 but for rounding, or a power
+/// of two times that, is left as it is: a scene that is written out and read again keeps its bits. Zeros come out
+/// without a sign, for the same reason.
 pub(super) fn unit(v: DVec3) -> Option<DVec3> {
-    let scaled = v / v.abs().max_element();
-    scaled.is_finite().then(|| scaled / scaled.length())
+    /// By how much the squared length of what this function gives may be off.
+    const ROUNDING: f64 = 8.0 * f64::EPSILON;
+    let scaled = scale_exactly(v)?;
+    for unit in [scaled, 0.5 * scaled] {
+        if (unit.length_squared() - 1.0).abs() <= ROUNDING {
+            return Some(unit + DVec3::ZERO);
+        }
+    }
+    Some(scaled / scaled.length() + DVec3::ZERO)
+}
+
+/// The vector times the power of two that brings its greatest component to [1, 2), if it has one.
+fn scale_exactly(v: DVec3) -> Option<DVec3> {
+    const EXPONENT: u64 = 0x7ff << 52;
+    /// 2¹⁰⁰⁰.
+    const HUGE: f64 = f64::from_bits((1023 + 1000) << 52);
+    let greatest = v.abs().max_element();
+    // The least numbers have no power of two of their own, until they are enlarged.
+    let step = if greatest < 1.0 { HUGE } else { 1.0 };
+    let power = f64::from_bits((greatest * step).to_bits() & EXPONENT);
+    let scaled = v * step / power;
+    (greatest > 0.0 && scaled.is_finite()).then_some(scaled)
 }

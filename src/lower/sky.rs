@@ -44,7 +44,11 @@ fn turn_y(angle: f64) -> DMat3 {
 
 /// A map without the factor by which it enlarges; none where it enlarges one direction more than another.
 fn rotation(map: DMat3) -> Option<DMat3> {
-    let scaled = map * map.x_axis.length().recip();
+    /// By how much the squared length of what was divided by its length may be off: such a map is left as it is, so
+    /// that a scene that is written out and read again keeps its bits.
+    const ROUNDING: f64 = 8.0 * f64::EPSILON;
+    let even = (map.x_axis.length_squared() - 1.0).abs() <= ROUNDING;
+    let scaled = if even { map } else { map * map.x_axis.length().recip() } + DMat3::ZERO;
     let stretch = scaled.transpose() * scaled - DMat3::IDENTITY;
     let even = stretch.to_cols_array().iter().all(|entry| entry.abs() <= STRETCH);
     even.then_some(scaled)

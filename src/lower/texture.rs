@@ -4,7 +4,7 @@ use super::errors;
 use crate::asset::Image;
 use crate::diagnostic::Diagnostic;
 use crate::eval::{self, Given, Pattern, Read};
-use crate::files::{FilePath, Files};
+use crate::files::{Contents, FileError, FilePath, Files};
 use crate::math::DVec2;
 use crate::scene::{ImageId, Paint, Texture, TextureId};
 use crate::schema;
@@ -40,6 +40,15 @@ impl<'f> Textures<'f> {
             known: BTreeMap::new(),
             images: vec![],
             read: BTreeMap::new(),
+        }
+    }
+
+    /// Says where the pictures were read.
+    pub(super) fn name(&self, contents: &mut Contents) {
+        for (path, found) in &self.read {
+            if let Ok(image) = found {
+                contents.add(self.images[image.0 as usize].hash(), path);
+            }
         }
     }
 
@@ -94,7 +103,7 @@ impl<'f> Textures<'f> {
 
     /// The picture of a file, named as the scene names it.
     pub(super) fn image(&mut self, file: &str, span: Span) -> Result<ImageId, Box<Diagnostic>> {
-        let refuse = |error| Box::new(errors::file(file, error, span));
+        let refuse = |error: FileError| Box::new(error.diagnostic(file, span));
         let path = self.sources.get(span.source).path.join(file).map_err(refuse)?;
         let found = match self.read.get(&path) {
             Some(found) => found.clone(),

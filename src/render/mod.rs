@@ -52,6 +52,7 @@ pub mod texture;
 mod vector;
 mod warp;
 
+use crate::asset::Mesh;
 use crate::color::Rgb;
 use crate::math::{DVec3, exp2, ln};
 use crate::scene::{Light, Material, Paint, PrimitiveId, Scene, Shape, Target, Tonemap};
@@ -72,6 +73,7 @@ use queue::{Arrived, Job, Jobs, View};
 use rayon::prelude::*;
 use shape::{Face, Hits, decode, slot};
 use space::Space;
+use std::collections::BTreeMap;
 use surfaces::Surfaces;
 
 /// A scene, ready to be traced.
@@ -103,8 +105,8 @@ pub struct Rendered {
     pub target_met: bool,
 }
 
-/// About how many bytes it takes to trace the whole of a scene: its surfaces, the hierarchy over them while it is
-/// built, the film, and the picture that is made of it.
+/// About how many bytes it takes to trace the whole of a scene: its surfaces, its meshes, each counted once, the
+/// hierarchies over them while they are built, the film, and the picture that is made of it.
 pub fn memory(scene: &Scene) -> u64 {
     let surfaces = scene.primitives.len() as u64;
     let surface =
@@ -112,7 +114,22 @@ pub fn memory(scene: &Scene) -> u64 {
     // A pass over the picture is held beside the sums that it is added to.
     let pixel = (2 * size_of::<Pixel>() + size_of::<Rgb>()) as u64;
     let [width, height] = scene.trace.size.map(u64::from);
-    surfaces * surface + width * height * pixel
+    let meshes: BTreeMap<[u8; 32], &Mesh> = scene
+        .primitives
+        .iter()
+        .filter_map(|p| mesh_of(&p.shape))
+        .map(|m| (*m.hash().as_bytes(), m))
+        .collect();
+    let mesh = |mesh: &Mesh| (mesh.bytes() + mesh.len() * exact::BYTES_A_THING) as u64;
+    let meshes: u64 = meshes.into_values().map(mesh).sum();
+    surfaces * surface + meshes + width * height * pixel
+}
+
+fn mesh_of(shape: &Shape) -> Option<&Mesh> {
+    match shape {
+        Shape::Mesh(instance) => Some(&instance.mesh),
+        _ => None,
+    }
 }
 
 /// How the film will be shown, which is what a noise target speaks of.

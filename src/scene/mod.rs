@@ -10,6 +10,7 @@
 //! - [`Scene::hash`] is canonical: equal scenes have equal hashes, and anything that may change a bit of the
 //!   picture's radiance changes it. What only develops the film is in [`Develop`], outside the hash.
 
+pub mod boxes;
 pub mod nesting;
 pub mod shape;
 pub mod texture;
@@ -19,6 +20,7 @@ use crate::color::Rgb;
 use crate::math::{DAffine3, DMat3, DVec2, DVec3};
 pub use crate::schema::{Background, Filter, Tonemap};
 use serde::Serialize;
+use shape::Placed;
 pub use shape::Shape;
 use std::sync::Arc;
 pub use texture::{FrameId, ImageId, Paint, Texture, TextureId};
@@ -34,8 +36,8 @@ pub struct Scene {
     pub textures: Vec<Texture>,
     /// Pictures that textures and the sky show, each once.
     pub images: Vec<Arc<Image>>,
-    /// Maps from the world to the own space of textured things.
-    pub frames: Vec<DAffine3>,
+    /// The spaces in which the textures of things lie.
+    pub frames: Vec<Placed>,
     /// Lights that are no surface.
     pub lights: Vec<Light>,
     /// Where the picture is taken from.
@@ -266,9 +268,9 @@ impl Scene {
             .expect("the sink takes everything, and the scene has only sized parts")
     }
 
-    /// The map from the world to a textured primitive's own space.
+    /// The map from the world to the space of a primitive's texture.
     pub fn frame(&self, primitive: &Primitive) -> DAffine3 {
-        primitive.frame.map_or(DAffine3::IDENTITY, |id| self.frames[id.0 as usize])
+        primitive.frame.map_or(DAffine3::IDENTITY, |id| self.frames[id.0 as usize].object_from_world)
     }
 
     /// The material of a primitive.

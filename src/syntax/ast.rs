@@ -1,7 +1,9 @@
 //! The syntax tree: what was written, with its places, before any name is looked up.
 
+use super::rows::Rows;
 use crate::span::{SourceId, Span};
 use smol_str::SmolStr;
+use std::sync::Arc;
 
 /// One source file. The entries are in the order of the text.
 #[derive(Clone, Debug)]
@@ -46,6 +48,8 @@ pub enum Entry {
     Field(Field),
     /// Anything else. Boxed, since most entries are fields.
     Statement(Box<Statement>),
+    /// Things of a file, of which an earlier one differs in its literals only. [`super::parse_rows`] gives them.
+    Rows(Arc<Rows>),
     /// Text that could not be understood, and was reported. The name it seems to give counts as given.
     Broken(Broken),
 }

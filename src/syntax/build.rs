@@ -6,6 +6,7 @@ use super::ast::{
 };
 use super::cut::Item;
 use super::errors::{self, Sink, statements};
+use super::rows::Rows;
 use super::shapes::Shapes;
 use super::{MAX_DEPTH, docs, statement, value};
 use crate::span::{SourceId, Span};
@@ -25,15 +26,9 @@ pub(super) type Node<'t> = Pair<'t, Rule>;
 /// A piece of the tree, and how many expressions lie inside each other in it.
 pub(super) type Deep<T> = (T, usize);
 
-/// The words that cannot be names.
-const RESERVED: &[&str] = &[
-    "let", "material", "and", "or", "not", "true", "false", "param", "part", "import", "as", "for", "in",
-    "if", "then", "else", "fn", "to", "assert",
-];
-
 /// Whether a word is one of the language, and so no name.
 pub(super) fn is_reserved(word: &str) -> bool {
-    RESERVED.contains(&word)
+    super::RESERVED.contains(&word)
 }
 
 /// The text that items were cut from.
@@ -50,15 +45,23 @@ pub(super) fn items(source: Source, items: &[Item]) -> (Vec<Entry>, Sink) {
     let mut entries = Vec::with_capacity(items.len());
     let mut sink = Sink::new();
     let mut shapes = Shapes::default();
+    let mut rows = Rows::default();
     for item in items {
         // An item with comments inside has places that its text alone does not tell.
         let plain = matches!(item.text, Cow::Borrowed(_)) && !item.skipped && item.depth < DEEP;
         let start = item.start as u32;
-        if plain && let Some(mut copies) = shapes.recall(&item.text, start) {
+        if plain && let Some((shape, literals)) = shapes.recall(&item.text) {
+            if shape.is_plain() && !docs::any(&source, item.start) {
+                rows.push(shape, &item.text, start, literals);
+                continue;
+            }
+            let mut copies = shape.copy(&item.text, start, literals);
             copies.iter_mut().for_each(|entry| document(source, entry));
+            close(&mut rows, &mut entries);
             entries.append(&mut copies);
             continue;
         }
+        close(&mut rows, &mut entries);
         let (built, slips) = on_enough_stack(item, || entries_of(source, item));
         if plain && slips.len() == 0 {
             shapes.learn(&built, start);
@@ -66,7 +69,15 @@ pub(super) fn items(source: Source, items: &[Item]) -> (Vec<Entry>, Sink) {
         entries.extend(built);
         sink.append(slips);
     }
+    close(&mut rows, &mut entries);
     (entries, sink)
+}
+
+/// Ends a run of rows.
+fn close(rows: &mut Rows, entries: &mut Vec<Entry>) {
+    if !rows.is_empty() {
+        entries.push(std::mem::take(rows).finish());
+    }
 }
 
 /// Gives a copy of a statement its own doc.
@@ -148,7 +159,7 @@ fn ends_invalid(entry: &Entry) -> bool {
     let invalid = |value: &Expr| matches!(value.kind, ExprKind::Invalid);
     match entry {
         Entry::Field(field) => invalid(&field.value),
-        Entry::Broken(_) => false,
+        Entry::Broken(_) | Entry::Rows(_) => false,
         Entry::Statement(statement) => match &statement.kind {
             StatementKind::Definition { value, .. } | StatementKind::Function { value, .. } => invalid(value),
             StatementKind::Param { default, range, .. } => invalid(range.as_ref().unwrap_or(default)),
@@ -163,6 +174,24 @@ fn ends_invalid(entry: &Entry) -> bool {
             StatementKind::Import { name, .. } => name.span.range().is_empty(),
             StatementKind::Thing { .. } => false,
         },
+    }
+}
+
+/// Makes the value invalid with which an entry ends, because more stands behind it: what it was to be is not known.
+/// What stands in a body of its own is looked at all the same.
+fn spoil(entry: &mut Entry) {
+    let value = match entry {
+        Entry::Field(field) => &mut field.value,
+        Entry::Broken(_) | Entry::Rows(_) => return,
+        Entry::Statement(statement) => match &mut statement.kind {
+            StatementKind::Definition { value, .. } | StatementKind::Function { value, .. } => value,
+            StatementKind::Param { default, range, .. } => range.as_mut().unwrap_or(default),
+            StatementKind::Assert { condition, message } => message.as_mut().unwrap_or(condition),
+            _ => return,
+        },
+    };
+    if !matches!(value.kind, ExprKind::Construct(_)) {
+        value.kind = ExprKind::Invalid;
     }
 }
 
@@ -225,6 +254,16 @@ impl<'t> Builder<'t> {
         self.text[..offset].trim_ascii_end()
     }
 
+    /// Where the item begins in its file.
+    pub(super) fn base(&self) -> usize {
+        self.base
+    }
+
+    /// Whether white space stands at a place of the source, whatever the item has there.
+    pub(super) fn is_blank(&self, place: u32) -> bool {
+        self.source.text.as_bytes().get(place as usize).is_some_and(u8::is_ascii_whitespace)
+    }
+
     /// The text behind an offset.
     pub(super) fn after(&self, offset: usize) -> &'t str {
         &self.text[offset..]
@@ -279,20 +318,31 @@ impl<'t> Builder<'t> {
         // Whether a complaint about the last entry, or about its value, explains what follows on its line.
         let (mut explained, mut explained_value) = (false, false);
         let mut muted = None;
+        // Where the last entry ends, if nothing of it was understood: more of the kind on its line is one slip.
+        let mut lost = None;
         for pair in pairs {
             match pair.as_rule() {
                 Rule::semicolon => self.semicolon(&pair),
                 Rule::crowded if explained => muted = Some(self.sink.borrow().len()),
                 Rule::crowded => self.crowded(&pair),
                 Rule::extra if explained || explained_value => {}
-                Rule::extra => self.unexpected(&pair, errors::unexpected_extra),
+                Rule::extra => {
+                    self.unexpected(&pair, errors::unexpected_extra);
+                    entries.last_mut().into_iter().for_each(spoil);
+                }
                 Rule::stray => self.stray(&pair),
                 Rule::EOI => {}
                 _ => {
+                    let known = self.sink.borrow().len();
+                    let start = pair.as_span().end() - pair.as_str().trim_ascii_start().len();
+                    let end = pair.as_span().start() + pair.as_str().trim_ascii_end().len();
                     let (entry, depth) = self.entry(pair, top);
-                    if let Some(length) = muted.take() {
+                    let nameless = matches!(entry, Entry::Broken(Broken { name: None, .. }));
+                    let again = lost.is_some_and(|lost| !self.text[lost..start].contains('\n'));
+                    if let Some(length) = muted.take().or((nameless && again).then_some(known)) {
                         self.sink.borrow_mut().truncate(length);
                     }
+                    lost = nameless.then_some(end);
                     explained = matches!(entry, Entry::Broken(_));
                     explained_value = ends_invalid(&entry);
                     deepest = deepest.max(depth);
@@ -362,6 +412,8 @@ impl<'t> Builder<'t> {
                     }
                 }
                 Entry::Broken(broken) => broken.span = span,
+                // The grammar knows nothing of them.
+                Entry::Rows(_) => {}
             }
             return self.checked(entry, depth.max(deepest), span);
         }
@@ -467,6 +519,7 @@ impl<'t> Builder<'t> {
                 StatementKind::For { .. } | StatementKind::If { .. } | StatementKind::Assert { .. } => None,
             },
             Entry::Broken(broken) => broken.name,
+            Entry::Rows(_) => None,
         };
         (Entry::Broken(Broken { name, span }), 0)
     }
@@ -479,6 +532,9 @@ impl<'t> Builder<'t> {
             let place = self.span(&sign);
             let edit = self.at(name.span.range().end - self.base, sign.as_span().end());
             self.report(errors::colon_in_definition(keyword.as_str(), &name.text, place, edit));
+        } else if let Some(ty) = sign.clone().into_inner().next() {
+            let edit = self.at(name.span.range().end - self.base, ty.as_span().end());
+            self.report(errors::type_in_definition(keyword.as_str(), &name.text, self.span(&ty), edit));
         }
         if is_reserved(&name.text) {
             self.report(errors::reserved(&name.text, name.span));

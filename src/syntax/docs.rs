@@ -30,6 +30,12 @@ pub(super) fn of(source: &Source, whole: Span, bare: Span) -> Option<SmolStr> {
     if lines.is_empty() { None } else { Some(SmolStr::new(lines.join("\n"))) }
 }
 
+/// Whether a statement without prefixes that begins here has a doc.
+pub(super) fn any(source: &Source, start: usize) -> bool {
+    let place = Span::new(source.id, start, start);
+    of(source, place, place).is_some()
+}
+
 /// The words of a doc comment; none where it is another comment.
 fn line(text: &str, span: Span) -> Option<&str> {
     let words = text[span.range()].strip_prefix("///").filter(|words| !words.starts_with('/'))?;

@@ -79,6 +79,7 @@ pub(super) fn unexpected_value(token: &str, span: Span) -> Diagnostic {
         "−" | "–" => diagnostic.help("a minus is written `-`").fix(span, "-"),
         "+" => diagnostic.help("a positive number has no sign").fix(span, ""),
         "!" => diagnostic.help("write `not`").fix(span, "not "),
+        "*" => diagnostic.help("write `pow(a, b)` for a power"),
         "=" => diagnostic.help("write one `=` or `:` and then the value"),
         _ => diagnostic.help("write a value such as `5cm`, `(0, 1, 0)m`, `#d94f30` or a name"),
     }
@@ -93,6 +94,8 @@ pub(super) fn unexpected_extra(token: &str, span: Span) -> Diagnostic {
         "°" => diagnostic.help("an angle is written `45deg`").fix(span, "deg"),
         "|" => diagnostic.help("write `or`, or `|>` to pass a placement on"),
         "^" => diagnostic.help("write `pow(a, b)`, or `a * a` for a square"),
+        "×" => diagnostic.help("times is written `*`").fix(span, "*"),
+        "÷" => diagnostic.help("divided by is written `/`").fix(span, "/"),
         "?" => diagnostic.help("a choice is written `if … then … else …`"),
         "if" => diagnostic.help("a choice is written `if … then … else …`"),
         "then" => diagnostic.help("`then` belongs to an `if` before it"),
@@ -132,6 +135,7 @@ pub(super) fn unexpected_entry(token: &str, span: Span, top: bool) -> Diagnostic
     };
     match token {
         "#" => diagnostic.help("a comment begins with `//`").fix(span, "//"),
+        "<" if !top => diagnostic.help("every value stands behind its field's name: `at: (0, 1, 0)m`"),
         "-" => {
             diagnostic.help("a line goes on in the next one behind an operator: end the line above with `-`")
         }
@@ -340,6 +344,14 @@ pub(super) fn colon_in_definition(keyword: &str, name: &str, sign: Span, edit: S
         .at("`=` is wanted")
         .help(format!("write `{keyword} {name} = …`"))
         .fix(edit, " =")
+}
+
+/// `let r: length = 5cm`
+pub(super) fn type_in_definition(keyword: &str, name: &str, ty: Span, edit: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("`{keyword} {name}` takes no type"), ty)
+        .at("follows from the value")
+        .help(format!("write `{keyword} {name} = …`; only a `param` and a `fn` name types"))
+        .fix(edit, "")
 }
 
 /// `radius: 5cm;`

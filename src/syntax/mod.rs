@@ -2,8 +2,8 @@
 //!
 //! Parsing never fails: it returns a tree and what was wrong. Top-level items stand alone: `cut` finds
 //! them in one pass, each is then parsed by the grammar in `grammar/rt.pest` and turned into [`ast`] by
-//! `build`, `statement` and `value`, a large text's items in parallel. `shapes` copies the tree of an item that
-//! differs from an earlier one in its literals only. What is said of slips is in `errors`.
+//! `build`, `statement` and `value`, a large text's items in parallel. `shapes` knows an item that
+//! differs from an earlier one in its literals only, `rows` keeps it as its literals. What is said of slips is in `errors`.
 //! `format` goes the other way.
 
 pub mod ast;
@@ -13,16 +13,24 @@ mod docs;
 mod errors;
 mod format;
 mod places;
+mod rows;
 mod shapes;
 mod slips;
 mod statement;
 mod value;
 
 pub use format::{WIDTH, format};
+pub use rows::{Rows, Shape};
 
 use crate::diagnostic::Diagnostic;
 use crate::span::{SourceId, Span};
 use rayon::prelude::*;
+
+/// The words of the language, which cannot be names.
+pub const RESERVED: &[&str] = &[
+    "let", "material", "and", "or", "not", "true", "false", "param", "part", "import", "as", "for", "in",
+    "if", "then", "else", "fn", "to", "assert",
+];
 
 /// The deepest nesting of brackets, and the deepest tree of an expression.
 pub const MAX_DEPTH: usize = 512;
@@ -33,9 +41,19 @@ pub const MAX_SOURCE: usize = 256 << 20;
 /// From this length on a text's items are parsed in parallel.
 const PARALLEL: usize = 1 << 20;
 
+/// So many items are parsed together: each chunk meets its shapes anew.
+const CHUNK: usize = 1 << 14;
+
 /// Reads a source. The tree holds all that could be understood; every slip is among the diagnostics, which
 /// are in the order of the text.
 pub fn parse(source: SourceId, text: &str) -> (ast::File, Vec<Diagnostic>) {
+    let (mut file, slips) = parse_rows(source, text);
+    file.body.entries = rows::written_out(file.body.entries, text);
+    (file, slips)
+}
+
+/// The same, with things that differ from an earlier one in their literals only as [`Rows`].
+pub fn parse_rows(source: SourceId, text: &str) -> (ast::File, Vec<Diagnostic>) {
     let span = Span::new(source, 0, text.len().min(MAX_SOURCE));
     if text.len() > MAX_SOURCE {
         let body = ast::Body { entries: vec![], span };
@@ -53,7 +71,7 @@ pub fn parse(source: SourceId, text: &str) -> (ast::File, Vec<Diagnostic>) {
     if text.len() < PARALLEL {
         collect(build::items(found, &cut.items));
     } else {
-        let built: Vec<_> = cut.items.par_chunks(1024).map(|chunk| build::items(found, chunk)).collect();
+        let built: Vec<_> = cut.items.par_chunks(CHUNK).map(|chunk| build::items(found, chunk)).collect();
         built.into_iter().for_each(collect);
     }
     let file = ast::File { source, body: ast::Body { entries, span }, comments: cut.comments };

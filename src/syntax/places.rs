@@ -23,6 +23,8 @@ pub(super) fn entry(entry: &mut Entry, visit: &mut impl Visit) {
             expr(&mut field.value, visit);
         }
         Entry::Statement(inner) => statement(inner, visit),
+        // Their places follow from others.
+        Entry::Rows(_) => {}
         Entry::Broken(broken) => {
             visit.span(&mut broken.span);
             broken.name.iter_mut().for_each(|inner| name(inner, visit));

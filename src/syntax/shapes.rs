@@ -1,15 +1,14 @@
 //! Items of one shape are parsed once.
 //!
 //! The items of a long text mostly differ in their numbers and colours alone. The first of a shape is read by the
-//! grammar, and remembered with what its places depend on; the next ones are copies of its tree with their own
-//! literals and places. The shape is the item's text with a mark for each literal, so that a copy is exactly what
-//! the grammar would give.
+//! grammar, and remembered with what its places depend on; the next ones are rows of literals, where that says all
+//! of them, or else copies of its tree with their own literals and places. The shape is the item's text with a mark
+//! for each literal, so that a copy is exactly what the grammar would give.
 
 use super::ast::Entry;
-use super::places::{self, Visit};
-use crate::span::Span;
-use smol_str::SmolStr;
+use super::rows::{Literal, Shape};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// The longest item that is remembered, in bytes.
 const MAX_LENGTH: usize = 4096;
@@ -23,50 +22,18 @@ const MAX_DIGITS: usize = 300;
 /// The shapes that were seen.
 #[derive(Default)]
 pub(super) struct Shapes {
-    known: BTreeMap<Vec<u8>, Template>,
+    known: BTreeMap<Vec<u8>, Arc<Shape>>,
     key: Vec<u8>,
     literals: Vec<Literal>,
-    shifts: Vec<u32>,
-}
-
-/// A number without its unit, or a colour with its `#`: bytes of the item.
-#[derive(Clone, Copy)]
-struct Literal {
-    start: u32,
-    end: u32,
-}
-
-/// The first item of a shape.
-struct Template {
-    /// Its entries, with places that count from the beginning of the item.
-    entries: Vec<Entry>,
-    /// For each end of each place, in the order in which [`places`] visits them: how many literals end before it.
-    behind: Vec<(u16, u16)>,
-    /// Where each literal ends in the first item.
-    ends: Vec<u32>,
 }
 
 impl Shapes {
-    /// The entries of an item that begins at `start` in its source, if its shape is known. Asked before
-    /// [`Shapes::learn`] of the same item.
-    pub(super) fn recall(&mut self, text: &str, start: u32) -> Option<Vec<Entry>> {
+    /// The shape of an item, if it is known, and the item's literals. Asked before [`Shapes::learn`] of the same item.
+    pub(super) fn recall(&mut self, text: &str) -> Option<(&Arc<Shape>, &[Literal])> {
         if !self.scan(text) {
             return None;
         }
-        let template = self.known.get(&self.key)?;
-        self.shifts.clear();
-        self.shifts.push(start);
-        let ends = self.literals.iter().zip(&template.ends);
-        self.shifts.extend(ends.map(|(literal, end)| (start + literal.end).wrapping_sub(*end)));
-        let mut copy = Copy {
-            text,
-            shifts: &self.shifts,
-            behind: template.behind.iter(),
-            literals: self.literals.iter(),
-        };
-        let mut entries = template.entries.clone();
-        entries.iter_mut().for_each(|entry| places::entry(entry, &mut copy));
-        Some(entries)
+        self.known.get(&self.key).map(|shape| (shape, self.literals.as_slice()))
     }
 
     /// Remembers an item that was just asked for and read by the grammar without a slip.
@@ -74,13 +41,8 @@ impl Shapes {
         if self.key.is_empty() || self.known.len() >= MAX_SHAPES {
             return;
         }
-        let mut learn = Learn { start, literals: &self.literals, next: 0, behind: vec![], sound: true };
-        let mut entries = entries.to_vec();
-        entries.iter_mut().for_each(|entry| places::entry(entry, &mut learn));
-        if learn.sound && learn.next == self.literals.len() {
-            let ends = self.literals.iter().map(|literal| literal.end).collect();
-            let template = Template { entries, behind: learn.behind, ends };
-            self.known.insert(self.key.clone(), template);
+        if let Some(shape) = Shape::new(entries, start, &self.literals) {
+            self.known.insert(self.key.clone(), Arc::new(shape));
         }
     }
 
@@ -111,6 +73,10 @@ impl Shapes {
                         at = run(at + 1, |byte| byte.is_ascii_digit());
                     }
                     self.key.push(if point { MARK_NUMBER } else { MARK_INT });
+                    // A zero needs no unit.
+                    if text[start..at].iter().all(|byte| matches!(byte, b'0' | b'.')) {
+                        self.key.push(MARK_ZERO);
+                    }
                     self.literals.push(Literal { start: start as u32, end: at as u32 });
                     let next = text.get(at).copied().unwrap_or(b' ');
                     // What may belong to the number, or be misread as if it did.
@@ -157,77 +123,10 @@ impl Shapes {
 const MARK_INT: u8 = 2;
 const MARK_NUMBER: u8 = 3;
 const MARK_COLOR: u8 = 4;
+const MARK_ZERO: u8 = 5;
 
 fn is_word(byte: u8) -> bool {
     byte.is_ascii_alphanumeric() || byte == b'_' || byte >= 0x80
-}
-
-/// Makes the places of the first item count from its beginning, and notes what they depend on.
-struct Learn<'l> {
-    start: u32,
-    literals: &'l [Literal],
-    /// The literal that comes next.
-    next: usize,
-    behind: Vec<(u16, u16)>,
-    /// Whether the literals of the tree are those of the text.
-    sound: bool,
-}
-
-impl Learn<'_> {
-    fn literal(&mut self, at: Span) {
-        let start = at.start.wrapping_sub(self.start);
-        self.sound &= self.literals.get(self.next).is_some_and(|literal| literal.start == start);
-        self.next += 1;
-    }
-}
-
-impl Visit for Learn<'_> {
-    fn span(&mut self, span: &mut Span) {
-        span.start = span.start.wrapping_sub(self.start);
-        span.end = span.end.wrapping_sub(self.start);
-        let behind = |offset: u32| self.literals.partition_point(|literal| literal.end <= offset) as u16;
-        self.behind.push((behind(span.start), behind(span.end)));
-    }
-
-    fn number(&mut self, _: &mut f64, at: Span) {
-        self.literal(at);
-    }
-
-    fn color(&mut self, _: &mut SmolStr, at: Span) {
-        self.literal(at);
-    }
-}
-
-/// Gives a copy the places and literals of another item.
-struct Copy<'c> {
-    text: &'c str,
-    /// How far a place moves that stands behind so many literals.
-    shifts: &'c [u32],
-    behind: std::slice::Iter<'c, (u16, u16)>,
-    literals: std::slice::Iter<'c, Literal>,
-}
-
-impl Copy<'_> {
-    fn literal(&mut self) -> &str {
-        let literal = self.literals.next().copied().unwrap_or(Literal { start: 0, end: 0 });
-        &self.text[literal.start as usize..literal.end as usize]
-    }
-}
-
-impl Visit for Copy<'_> {
-    fn span(&mut self, span: &mut Span) {
-        let &(start, end) = self.behind.next().unwrap_or(&(0, 0));
-        span.start = span.start.wrapping_add(self.shifts[start as usize]);
-        span.end = span.end.wrapping_add(self.shifts[end as usize]);
-    }
-
-    fn number(&mut self, value: &mut f64, _: Span) {
-        *value = self.literal().parse().unwrap_or(f64::NAN);
-    }
-
-    fn color(&mut self, digits: &mut SmolStr, _: Span) {
-        *digits = SmolStr::new(&self.literal()[1..]);
-    }
 }
 
 #[cfg(test)]
@@ -242,6 +141,7 @@ mod tests {
         let cut = cut(SourceId(0), text);
         let source = Source { id: SourceId(0), text, comments: &cut.comments };
         let (together, _) = items(source, &cut.items);
+        let together = crate::syntax::rows::written_out(together, text);
         let alone: Vec<_> =
             cut.items.iter().flat_map(|item| items(source, std::slice::from_ref(item)).0).collect();
         assert_eq!(format!("{together:?}"), format!("{alone:?}"), "{text}");

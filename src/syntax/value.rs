@@ -209,7 +209,11 @@ fn call(builder: &Builder, mut path: Vec<Name>, arguments: Node, span: Span) -> 
     let call_end = elements.unit.as_ref().map_or(span, |_| Span { end: elements.end, ..span });
     let rest = path.split_off(1);
     let first = path.pop().expect("a function has a name");
-    let kind = ExprKind::Call { function: Path { first, rest }, arguments: elements.arguments };
+    let kind = match elements.closed {
+        true => ExprKind::Call { function: Path { first, rest }, arguments: elements.arguments },
+        // How many there were to be is not known; that the parenthesis is open was said.
+        false => ExprKind::Invalid,
+    };
     let (call, depth) = checked(builder, Expr { kind, span: call_end }, depth, span);
     scaled(builder, call, depth, elements.unit, span)
 }
@@ -224,7 +228,8 @@ fn conditional(builder: &Builder, pair: Node) -> Deep<Expr> {
     let known = !matches!(condition.kind, ExprKind::Invalid);
     let Some(then) = parts.next() else {
         if known {
-            builder.report(statements::missing_then(condition.span.after()));
+            let behind = builder.after(span.range().end - builder.base()).trim_ascii_start();
+            builder.report(statements::missing_then(condition.span.after(), errors::first_token(behind)));
         }
         return invalid(span);
     };
@@ -263,10 +268,13 @@ struct Elements {
     unit: Option<Name>,
     /// Just behind the closing parenthesis.
     end: u32,
+    /// Whether the closing parenthesis was written.
+    closed: bool,
 }
 
 fn elements(builder: &Builder, pair: Node) -> Elements {
-    let mut found = Elements { arguments: vec![], depth: 0, unit: None, end: builder.span(&pair).end };
+    let mut found =
+        Elements { arguments: vec![], depth: 0, unit: None, end: builder.span(&pair).end, closed: true };
     let mut name = None;
     let closer = if pair.as_rule() == Rule::list { "]" } else { ")" };
     for pair in pair.into_inner() {
@@ -287,7 +295,9 @@ fn elements(builder: &Builder, pair: Node) -> Elements {
             Rule::semicolon => builder.semicolon(&pair),
             _ => {
                 let close = builder.span(&pair);
-                found.end = if pair.as_str().starts_with(')') { close.start + 1 } else { close.start };
+                // Where none was written, one may have been put into the white space before what showed that.
+                found.closed = pair.as_str().starts_with(')') && !builder.is_blank(close.start);
+                found.end = if found.closed { close.start + 1 } else { close.start };
                 found.unit = pair.into_inner().next().map(|unit| unit_name(builder, unit));
             }
         }
@@ -313,7 +323,7 @@ fn label(builder: &Builder, pair: Node) -> Name {
 /// `(a)`, `(a, b)`, either with a unit behind it.
 fn group(builder: &Builder, pair: Node) -> Deep<Expr> {
     let outer = builder.span(&pair);
-    let Elements { arguments, depth, unit, end } = elements(builder, pair);
+    let Elements { arguments, depth, unit, end, closed } = elements(builder, pair);
     let span = Span { end, ..outer };
     for argument in &arguments {
         if let Some(name) = &argument.name {
@@ -322,6 +332,8 @@ fn group(builder: &Builder, pair: Node) -> Deep<Expr> {
     }
     let mut values: Vec<Expr> = arguments.into_iter().map(|argument| argument.value).collect();
     let kind = match values.len() {
+        // What was to stand in them is not known; that they are open was said.
+        _ if !closed => ExprKind::Invalid,
         0 => {
             builder.report(errors::empty_parentheses(span));
             ExprKind::Invalid

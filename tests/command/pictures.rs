@@ -25,7 +25,7 @@ fn one_failing_scene_does_not_stop_the_others() {
 #[test]
 fn a_transparent_background_goes_where_it_can_be_held() {
     let desk = Desk::new();
-    desk.put("open.rt", &format!("{BALL}\nrender {{ background: transparent }}\n"));
+    desk.put("open.rt", format!("{BALL}\nrender {{ background: transparent }}\n"));
     desk.quick("open.rt -o a.png -o a.exr -o a.webp").expect(0, &["a.png, a.exr, a.webp"]);
     assert_eq!(desk.get("a.png")[25], 6, "red, green, blue and alpha");
     desk.run("develop a.exr -o b.png").expect(0, &[]);

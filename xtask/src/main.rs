@@ -3,6 +3,7 @@
 //!
 //! Nothing is skipped quietly. A tool that is missing fails the step that needs it, with its name.
 
+mod export;
 mod readme;
 mod reference;
 
@@ -24,6 +25,7 @@ const STEPS: &[(&str, Step)] = &[
     ("memory", memory),
     ("licences", licences),
     ("reference", reference::agreement),
+    ("export", export::agreement),
     ("readme", readme::commands),
 ];
 
@@ -39,6 +41,7 @@ cargo xtask e2e [STEP…]
   memory     hostile sources within 2 GiB of address space
   licences   every dependency's licence is one that deny.toml allows
   reference  the room against a converged picture of another renderer (minutes)
+  export     exported scenes against Mitsuba (from PyPI) and POV-Ray (povray, of Debian)
   readme     every command of the README, in a fresh clone of HEAD
 
 Without STEP all are run. Needs python3, bash, git and, for full-disk, leave to mount a tmpfs.";
@@ -94,18 +97,31 @@ fn e2e(wanted: &[String]) -> Outcome {
     if failed.is_empty() { Ok(()) } else { Err(format!("e2e failed: {}", failed.join(", "))) }
 }
 
+/// The pictures that the README shows, beside the figures of the report: scene and size.
+const GALLERY: &[(&str, &str)] = &[
+    ("three-balls", "480x360"),
+    ("marbles", "480x270"),
+    ("garden/garden", "480x270"),
+    ("sphereflake", "360x270"),
+    ("one-weekend", "480x270"),
+    ("newton", "360x270"),
+    ("hyperboloid-tower", "270x360"),
+];
+
 /// Makes the pictures that the README shows.
 fn gallery() -> Outcome {
     let root = root()?;
-    let mut scenes = vec![root.join("examples/three-balls.rt")];
+    let examples = root.join("examples");
+    let shown = GALLERY.iter().map(|(name, size)| (examples.join(name).with_extension("rt"), *size));
+    let mut scenes: Vec<(PathBuf, &str)> = shown.collect();
     let report =
-        fs::read_dir(root.join("examples/report")).map_err(|error| format!("examples/report: {error}"))?;
+        fs::read_dir(examples.join("report")).map_err(|error| format!("examples/report: {error}"))?;
+    let figures = report.flatten().map(|entry| entry.path());
     scenes.extend(
-        report.flatten().map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "rt")),
+        figures.filter(|path| path.extension().is_some_and(|e| e == "rt")).map(|path| (path, "320x240")),
     );
-    for scene in scenes {
+    for (scene, size) in scenes {
         let name = scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let size = if name == "three-balls" { "480x360" } else { "320x240" };
         let picture = root.join("docs/gallery").join(format!("{name}.png"));
         let mut build = Command::new("cargo");
         build.args([
@@ -116,10 +132,10 @@ fn gallery() -> Outcome {
             "rtc",
             "--",
             "build",
-            "--size",
-            size,
             "--samples",
             "256",
+            "--size",
+            size,
         ]);
         run(build.arg(&scene).arg("-o").arg(picture).current_dir(&root))?;
     }

@@ -6,13 +6,8 @@ use tobj::{LoadError, LoadOptions};
 
 /// Reads vertices and faces; lines and points are left out, and materials are the scene's.
 pub(super) fn read(bytes: &[u8]) -> Result<Raw, String> {
-    let options = LoadOptions {
-        single_index: true,
-        triangulate: true,
-        ignore_points: true,
-        ignore_lines: true,
-        ..LoadOptions::default()
-    };
+    let options =
+        LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
     let no_materials = |_: &std::path::Path| Err(LoadError::OpenFileFailed);
     let (models, _) = tobj::load_obj_buf(&mut &*bytes, &options, no_materials)
         .map_err(|error| format!("is no sound PLY or OBJ file: {error}"))?;

@@ -11,7 +11,7 @@ use ply_rs_bw::ply::{
 pub(super) fn read(bytes: &[u8]) -> Result<Raw, String> {
     let refuse = |error: ply_rs_bw::parser::ParseError| format!("is no sound PLY file: {error}");
     let mut reader = Reader::new(bytes);
-    let header = Parser::<Skipped>::new().read_header(&mut reader).map_err(|error| refuse(error.into()))?;
+    let header = Parser::<Skipped>::new().read_header(&mut reader).map_err(refuse)?;
     let mut raw = Raw::default();
     for (_, element) in &header.elements {
         fits(element, &header, bytes.len())?;
@@ -19,17 +19,17 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raw, String> {
             "vertex" => {
                 let parser = Parser::<Vertex>::new();
                 let vertices = parser.read_payload_for_element(&mut reader, element, &header);
-                take_vertices(&vertices.map_err(|error| refuse(error.into()))?, element, &mut raw)?;
+                take_vertices(&vertices.map_err(refuse)?, element, &mut raw)?;
             }
             "face" => {
                 let parser = Parser::<Face>::new();
                 let faces = parser.read_payload_for_element(&mut reader, element, &header);
-                take_faces(&faces.map_err(|error| refuse(error.into()))?, &mut raw)?;
+                take_faces(&faces.map_err(refuse)?, &mut raw)?;
             }
             _ => {
                 let parser = Parser::<Skipped>::new();
                 let skipped = parser.read_payload_for_element(&mut reader, element, &header);
-                skipped.map_err(|error| refuse(error.into()))?;
+                skipped.map_err(refuse)?;
             }
         }
     }

@@ -41,6 +41,13 @@ pub(in crate::check) fn mismatch(
             (FieldType::Tuple(..) | FieldType::IntTuple(_), _) => {
                 diagnostic.help(format!("write `{}: {}`", name, example_tuple(field)))
             }
+            (FieldType::Color | FieldType::Paint, Type::Text)
+                if crate::color::named(text.trim_matches('"')).is_some() =>
+            {
+                let name = text.trim_matches('"');
+                diagnostic.help(format!("the name of a colour has no quotes: `{name}`")).fix(span, name)
+            }
+            (FieldType::Color | FieldType::Paint, _) => diagnostic.help(color_help(text, ty)),
             (FieldType::Made(_), _) => diagnostic.help("such as `diffuse { color: #d94f30 }`"),
             (FieldType::Transform, _) => {
                 diagnostic.help("such as `scale(2) |> turn(z: 10deg) |> move(0, 1m, 0)`")

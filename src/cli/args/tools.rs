@@ -98,8 +98,8 @@ pub struct Check {
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
 
-    /// Makes every mend that is certain, writes the file anew and tells what was done; what is left is reported. A
-    /// scene from standard input goes to standard output.
+    /// Makes every mend that is certain, writes the file anew and tells what was done; what is left is reported. Only
+    /// the files that are named are mended, not those they import. A scene from standard input goes to standard output.
     #[arg(long)]
     pub fix: bool,
 
@@ -127,6 +127,46 @@ pub struct Explain {
     /// Lists all codes with what they are about.
     #[arg(long)]
     pub list: bool,
+}
+
+/// Flags of `rtc expand`.
+#[derive(Args)]
+pub struct Expand {
+    /// The scene; `-` is standard input.
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+
+    /// Writes the flat scene here, in place of standard output.
+    #[arg(short, long = "output", value_name = "OUT.rt")]
+    pub output: Option<PathBuf>,
+
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub reading: Reading,
+}
+
+/// Flags of `rtc export`.
+#[derive(Args)]
+pub struct Export {
+    /// The scene; `-` is standard input.
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+
+    /// Writes it here, for the renderer of the extension: xml (Mitsuba 3), pbrt (pbrt-v4) or pov (POV-Ray).
+    #[arg(short, long = "output", value_name = "OUT", required = true)]
+    pub output: PathBuf,
+
+    /// Says nearly what the renderer cannot say exactly, and lists it. Without, it is an error.
+    #[arg(long)]
+    pub approximate: bool,
+
+    /// Makes triangles, N around, of curved surfaces that the renderer does not know.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=4096))]
+    pub tessellate: Option<u32>,
+
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub reading: Reading,
 }
 
 /// Flags of `rtc info`.

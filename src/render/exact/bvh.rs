@@ -34,6 +34,10 @@ const STEP_COST: f64 = 2.0;
 const DEEPEST_SAH: usize = 32;
 const STACK: usize = 72;
 
+/// About what the hierarchy takes for each thing while it is built: about a node, its place in the order, and its box
+/// among the items.
+pub(in crate::render) const BYTES_A_THING: usize = size_of::<Node>() + size_of::<u32>() + size_of::<Item>();
+
 impl Hierarchy {
     /// Builds it over things with finite boxes.
     pub fn new(things: Vec<(u32, Bounds)>) -> Hierarchy {

@@ -12,6 +12,7 @@ use super::shape::{Face, Hits, ROUNDING, Rays, decode, encode, slot};
 use super::space::{Space, double};
 use crate::math::DVec3;
 use crate::scene::{PrimitiveId, Scene, Shape};
+pub(super) use bvh::BYTES_A_THING;
 use mesh::Tree;
 pub(super) use mesh::uv as mesh_uv;
 use std::collections::BTreeMap;

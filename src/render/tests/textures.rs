@@ -7,6 +7,7 @@ use crate::render::exact::SurfacePoint;
 use crate::render::path::Sharing;
 use crate::render::shape::Face;
 use crate::render::texture::{Spot, clouds, paint};
+use crate::scene::shape::Placed;
 use crate::scene::{FrameId, ImageId, Paint, Texture, TextureId};
 use std::sync::Arc;
 
@@ -18,7 +19,8 @@ fn painted(shape: Shape, texture: Texture, world_from_object: DAffine3) -> Scene
     let material = Material::Diffuse { color: Paint::Texture(TextureId(0)) };
     let mut scene = scene(v(0.0, 0.0, 9.0), DVec3::ZERO).with(shape, material);
     scene.textures.push(texture);
-    scene.frames.push(world_from_object.inverse());
+    let object_from_world = world_from_object.inverse();
+    scene.frames.push(Placed { world_from_object, object_from_world });
     scene.primitives[0].frame = Some(FrameId(0));
     scene
 }
@@ -144,7 +146,8 @@ fn patterned(shape: Shape) -> Scene {
     let mut scene = scene(v(0.0, 0.3, 0.0), DVec3::ZERO).with(floor(), white()).bounces(1);
     scene = scene.with(shape, Material::Emitter { radiance: Rgb::splat(3.0), pattern: Some(TextureId(0)) });
     scene.textures.push(Texture::Stripes { a: WHITE, b: BLACK, width: 0.3, along: DVec3::X });
-    scene.frames.push(DAffine3::IDENTITY);
+    let [world_from_object, object_from_world] = [DAffine3::IDENTITY; 2];
+    scene.frames.push(Placed { world_from_object, object_from_world });
     scene.primitives[1].frame = Some(FrameId(0));
     scene
 }
@@ -184,7 +187,7 @@ fn the_hash_of_a_scene_sees_what_it_is_painted_with() {
     changed.images[0] = Arc::new(Image::new(1, 1, vec![[0.5; 3]]).unwrap());
     assert_ne!(scene.hash(), changed.hash());
     let mut moved = scene.clone();
-    moved.frames[0].translation.x = 1.0;
+    moved.frames[0].object_from_world.translation.x = 1.0;
     assert_ne!(scene.hash(), moved.hash());
     let mut again = scene.clone();
     again.images[0] = four();

@@ -122,8 +122,13 @@ pub(in crate::syntax) fn braces_in_value(span: Span) -> Diagnostic {
 }
 
 /// `if c 1 else 2`, or nothing more.
-pub(in crate::syntax) fn missing_then(place: Span) -> Diagnostic {
-    missing("`then` is missing", place, "then").at("`then` and a value belong here")
+pub(in crate::syntax) fn missing_then(place: Span, token: &str) -> Diagnostic {
+    let diagnostic = missing("`then` is missing", place, "then").at("`then` and a value belong here");
+    match token {
+        "&" => diagnostic.help("both conditions at once are written `a and b`"),
+        "|" => diagnostic.help("either condition is written `a or b`"),
+        _ => diagnostic,
+    }
 }
 
 /// `if c then 1`

@@ -30,7 +30,18 @@ pub(super) fn group(docs: Vec<Doc>) -> Doc {
 }
 
 fn width_of(docs: &[Doc]) -> Option<usize> {
-    docs.iter().try_fold(0, |sum, doc| Some(sum + width(doc)?))
+    let (mut sum, mut spaced) = (0, false);
+    for doc in docs {
+        // A space that is there sets a comment off.
+        sum += width(doc)? - usize::from(spaced && matches!(doc, Doc::Comment(_)));
+        spaced = match doc {
+            Doc::Line => true,
+            Doc::Text(text) => text.ends_with(' '),
+            Doc::Soft | Doc::Blank => spaced,
+            _ => false,
+        };
+    }
+    Some(sum)
 }
 
 fn width(doc: &Doc) -> Option<usize> {

@@ -1,7 +1,9 @@
 //! Tree and comments to a document.
 //!
 //! Tokens come in the order of the source. Before each, the comments that stand before it there are printed, so
-//! that none is lost, wherever it stands.
+//! that none is lost, wherever it stands. Expressions are in `value`.
+
+mod value;
 
 use super::super::ast::{
     Argument, BinaryOp, Body, Comment, Construct, Entry, Expr, ExprKind, Name, Parameter, Path, Prefix,
@@ -24,6 +26,7 @@ impl Unit<'_> {
         match self {
             Unit::Entry(Entry::Field(field)) => start(field.name.span),
             Unit::Entry(Entry::Broken(broken)) => start(broken.span),
+            Unit::Entry(Entry::Rows(rows)) => start(rows.span()),
             Unit::Entry(Entry::Statement(statement)) => {
                 start(statement.prefixes.first().map_or(statement.span, |prefix| prefix.span))
             }
@@ -35,6 +38,7 @@ impl Unit<'_> {
         match self {
             Unit::Entry(Entry::Field(field)) => end(field.value.span),
             Unit::Entry(Entry::Broken(broken)) => end(broken.span),
+            Unit::Entry(Entry::Rows(rows)) => end(rows.span()),
             Unit::Entry(Entry::Statement(statement)) => end(statement.span),
             Unit::Verbatim(range) => range.end,
         }
@@ -193,6 +197,7 @@ impl<'t> Printer<'t> {
             }
             Unit::Entry(Entry::Statement(statement)) => self.statement(statement, out),
             Unit::Entry(Entry::Broken(broken)) => self.verbatim(broken.span.range(), out),
+            Unit::Entry(Entry::Rows(rows)) => self.verbatim(rows.span().range(), out),
             Unit::Verbatim(range) => self.verbatim(range.clone(), out),
         }
     }
@@ -392,195 +397,6 @@ impl<'t> Printer<'t> {
             }
             TypeName::Invalid(span) => out.push(Doc::Text(self.source(*span))),
         }
-    }
-
-    // --- Expressions ----------------------------------------------------------------------------------------
-
-    fn expr(&mut self, expr: &'t Expr, out: &mut Docs<'t>) {
-        self.lead(start(expr.span), out);
-        let closer = end(expr.span).saturating_sub(1);
-        match &expr.kind {
-            ExprKind::Invalid
-            | ExprKind::Number { .. }
-            | ExprKind::Quantity { .. }
-            | ExprKind::Bool(_)
-            | ExprKind::Text(_)
-            | ExprKind::Color(_)
-            | ExprKind::Name(_) => out.push(Doc::Text(self.source(expr.span))),
-            ExprKind::Scaled { value, unit } => {
-                self.expr(value, out);
-                out.push(Doc::Text(self.source(unit.span)));
-            }
-            ExprKind::Tuple(values) => self.values(["(", ")"], closer, values, false, out),
-            ExprKind::List(values) => {
-                let fill = values.iter().all(is_small);
-                self.values(["[", "]"], closer, values, fill, out);
-            }
-            ExprKind::Paren(value) => {
-                self.values(["(", ")"], closer, std::slice::from_ref(&**value), false, out);
-            }
-            ExprKind::Call { function, arguments } => {
-                self.path(function, out);
-                self.arguments(arguments, closer, out);
-            }
-            ExprKind::Member { value, member } => {
-                self.expr(value, out);
-                self.lead(start(member.span), out);
-                out.push(Doc::Text("."));
-                out.push(Doc::Text(self.source(member.span)));
-            }
-            ExprKind::Index { value, index } => {
-                self.expr(value, out);
-                self.values(["[", "]"], closer, std::slice::from_ref(&**index), false, out);
-            }
-            ExprKind::If { .. } => {
-                let mut inner = vec![];
-                self.conditional(expr, &mut inner);
-                out.push(group(vec![Doc::Nest(inner)]));
-            }
-            ExprKind::Construct(construct) => self.construct(construct, out),
-            ExprKind::Unary { operator, operand } => {
-                out.push(Doc::Text(if *operator == UnaryOp::Not { "not " } else { "-" }));
-                self.expr(operand, out);
-            }
-            ExprKind::Binary { operator, .. } => {
-                let (mut first, mut behind) = (vec![], vec![]);
-                self.chain(expr, level(*operator), &mut first, &mut behind);
-                first.push(Doc::Nest(behind));
-                out.push(group(first));
-            }
-        }
-    }
-
-    /// A row of operators that bind alike: the first operand, and what follows. It breaks before operators, but
-    /// behind `-`, which at the beginning of a line would be another entry.
-    fn chain(&mut self, expr: &'t Expr, level: u8, first: &mut Docs<'t>, behind: &mut Docs<'t>) {
-        match &expr.kind {
-            ExprKind::Binary { operator, at, left, right } if self::level(*operator) == level => {
-                self.chain(left, level, first, behind);
-                let last = if behind.is_empty() { &mut *first } else { &mut *behind };
-                self.trail(end(left.span), start(*at), last);
-                match operator {
-                    BinaryOp::Subtract => {
-                        self.lead(start(*at), behind);
-                        behind.push(Doc::Text(" -"));
-                        self.trail(end(*at), start(right.span), behind);
-                        behind.push(Doc::Line);
-                    }
-                    _ => {
-                        behind.push(Doc::Line);
-                        self.lead(start(*at), behind);
-                        behind.push(Doc::Text(operator.symbol()));
-                        behind.push(Doc::Text(" "));
-                    }
-                }
-                self.expr(right, behind);
-            }
-            _ => self.expr(expr, first),
-        }
-    }
-
-    fn conditional(&mut self, expr: &'t Expr, out: &mut Docs<'t>) {
-        self.lead(start(expr.span), out);
-        let ExprKind::If { condition, then, otherwise } = &expr.kind else { return self.expr(expr, out) };
-        out.push(Doc::Text("if "));
-        self.expr(condition, out);
-        self.trail(end(condition.span), start(then.span), out);
-        out.extend([Doc::Line, Doc::Text("then ")]);
-        self.expr(then, out);
-        self.trail(end(then.span), start(otherwise.span), out);
-        out.extend([Doc::Line, Doc::Text("else ")]);
-        self.conditional(otherwise, out);
-    }
-
-    fn values(
-        &mut self,
-        brackets: [&'static str; 2],
-        closer: usize,
-        values: &'t [Expr],
-        fill: bool,
-        out: &mut Docs<'t>,
-    ) {
-        let place = |value: &Expr| value.span.range();
-        self.enclosed(brackets, closer, values, place, fill, out, |this, value, out| this.expr(value, out));
-    }
-
-    fn arguments(&mut self, arguments: &'t [Argument], closer: usize, out: &mut Docs<'t>) {
-        let place = |argument: &Argument| {
-            let first = argument.name.as_ref().map_or(argument.value.span, |name| name.span);
-            start(first)..end(argument.value.span)
-        };
-        self.enclosed(["(", ")"], closer, arguments, place, false, out, |this, argument, out| {
-            if let Some(name) = &argument.name {
-                this.name(name, out);
-                out.push(Doc::Text(": "));
-            }
-            this.expr(&argument.value, out);
-        });
-    }
-
-    /// What stands between brackets, separated by commas: on one line, or each on its own, or as many on a line as
-    /// fit (`fill`).
-    #[allow(clippy::too_many_arguments)]
-    fn enclosed<T>(
-        &mut self,
-        [open, close]: [&'static str; 2],
-        closer: usize,
-        items: &'t [T],
-        place: impl Fn(&T) -> Range<usize>,
-        fill: bool,
-        out: &mut Docs<'t>,
-        mut print: impl FnMut(&mut Printer<'t>, &'t T, &mut Docs<'t>),
-    ) {
-        let mut inner = vec![Doc::Soft];
-        for (index, item) in items.iter().enumerate() {
-            let mut one = vec![];
-            if index > 0 {
-                one.push(Doc::Line);
-            }
-            self.lead(place(item).start, &mut one);
-            print(self, item, &mut one);
-            let next = items.get(index + 1).map_or(closer, |next| place(next).start);
-            if index + 1 < items.len() {
-                one.push(Doc::Text(","));
-            }
-            self.trail(place(item).end, next, &mut one);
-            match fill && index > 0 {
-                true => inner.push(group(one)),
-                false => inner.extend(one),
-            }
-        }
-        self.lead(closer, &mut inner);
-        out.push(group(vec![Doc::Text(open), Doc::Nest(inner), Doc::Soft, Doc::Text(close)]));
-    }
-}
-
-/// How tight an operator binds: those of one level stand in one row.
-fn level(operator: BinaryOp) -> u8 {
-    use BinaryOp::*;
-    match operator {
-        Pipe => 0,
-        Or => 1,
-        And => 2,
-        Equal | NotEqual | Less | LessEqual | Greater | GreaterEqual => 3,
-        To => 4,
-        Add | Subtract => 5,
-        Multiply | Divide => 6,
-    }
-}
-
-/// Values of which many stand on a line.
-fn is_small(expr: &Expr) -> bool {
-    match &expr.kind {
-        ExprKind::Number { .. }
-        | ExprKind::Quantity { .. }
-        | ExprKind::Bool(_)
-        | ExprKind::Color(_)
-        | ExprKind::Name(_) => true,
-        ExprKind::Tuple(values) => values.iter().all(is_small),
-        ExprKind::Scaled { value, .. } => is_small(value),
-        ExprKind::Unary { operand, .. } => is_small(operand),
-        _ => false,
     }
 }
 

@@ -1,0 +1,86 @@
+//! How fast text becomes a scene, all stages together: `cargo bench --bench compile`.
+
+use divan::Bencher;
+use divan::counter::{BytesCount, ItemsCount};
+use rt_lang::files::{FileError, FilePath, Files};
+use rt_lang::source::{Source, Sources};
+use rt_lang::{Options, compile};
+use std::fmt::Write;
+use std::sync::Arc;
+
+fn main() {
+    divan::main();
+}
+
+/// So many things in each scene.
+const THINGS: usize = 200_000;
+
+/// Numbers that look random and are the same every time: the linear congruence of Knuth's MMIX.
+struct Numbers(u64);
+
+impl Numbers {
+    /// Hundredths from −5 to 5.
+    fn metres(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 40) % 1001) as f64 / 100.0 - 5.0
+    }
+}
+
+/// The one file there is to read.
+struct OneFile(Arc<[u8]>);
+
+impl Files for OneFile {
+    fn read(&self, _: &FilePath, _: usize) -> Result<Arc<[u8]>, FileError> {
+        Ok(self.0.clone())
+    }
+}
+
+fn compiled(files: &OneFile, text: &str) {
+    let mut sources = Sources::default();
+    let main = sources.add(Source::new("bench.rt", text));
+    let compiled = compile(files, &mut sources, main, &Options::default());
+    assert!(compiled.scene.is_some());
+}
+
+#[divan::bench(sample_count = 5)]
+fn flat_text(bencher: Bencher) {
+    let (mut text, mut numbers) = (String::new(), Numbers(1));
+    for _ in 0..THINGS {
+        let [x, y, z] = [(); 3].map(|()| numbers.metres());
+        writeln!(text, "sphere {{ at: ({x:.2}, {y:.2}, {z:.2})m, radius: 12mm }}")
+            .expect("a string takes all");
+    }
+    let files = OneFile([].into());
+    bencher.counter(BytesCount::of_str(&text)).bench(|| compiled(&files, &text));
+}
+
+#[divan::bench(sample_count = 5)]
+fn loops(bencher: Bencher) {
+    let text =
+        format!("for i in range({THINGS}) {{ sphere {{ at: (i * 1mm, rand(i) * 1m, 0), radius: 0.3mm }} }}");
+    let files = OneFile([].into());
+    bencher.counter(ItemsCount::new(THINGS)).bench(|| compiled(&files, &text));
+}
+
+fn points() -> OneFile {
+    let (mut table, mut numbers) = (String::from("x [m],y [m],z [m]\n"), Numbers(1));
+    for _ in 0..THINGS {
+        let [x, y, z] = [(); 3].map(|()| numbers.metres());
+        writeln!(table, "{x:.6},{y:.6},{z:.6}").expect("a string takes all");
+    }
+    OneFile(table.into_bytes().into())
+}
+
+#[divan::bench(sample_count = 5)]
+fn table_read(bencher: Bencher) {
+    let files = points();
+    let text = "let points = table(\"points.csv\")\nsphere { at: (points[0].x, 0, 0), radius: 1mm }";
+    bencher.counter(BytesCount::new(files.0.len())).bench(|| compiled(&files, text));
+}
+
+#[divan::bench(sample_count = 5)]
+fn table_drawn(bencher: Bencher) {
+    let files = points();
+    let text = "for p in table(\"points.csv\") { sphere { at: (p.x, p.y, p.z), radius: 1mm } }";
+    bencher.counter(ItemsCount::new(THINGS)).bench(|| compiled(&files, text));
+}
