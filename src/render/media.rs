@@ -90,6 +90,17 @@ impl<'s> Dielectrics<'s> {
         }
     }
 
+    /// The same for a start anywhere, which takes longer.
+    pub fn enter_anywhere(&self, exact: &Exact, start: DVec3, inside: &mut Inside) {
+        inside.solids.clear();
+        inside.medium = None;
+        for id in (0..self.scene.primitives.len() as u32).map(PrimitiveId) {
+            if self.is_solid(id) && exact.contains(id, start) {
+                self.cross(inside, id, true);
+            }
+        }
+    }
+
     /// What the surface of a dielectric does to a path that enters or leaves it.
     pub fn boundary(&self, inside: &Inside, id: PrimitiveId, entering: bool) -> Boundary {
         let others = || inside.solids.iter().copied().filter(|&solid| solid != id);

@@ -14,6 +14,7 @@
 //! | [`bsdf`], `materials`, `texture` | how surfaces scatter light, and their colour by place |
 //! | [`light`] | where light comes from |
 //! | [`media`] | which dielectric a path is inside of |
+//! | `caustic` | light that comes by mirrors and glass |
 //! | `path`, `queue` | paths, step by step, and those that wait for a lane |
 //! | [`observer`] | watching paths |
 //! | [`film`] | exact sums |
@@ -29,6 +30,7 @@
 mod accel;
 pub mod bsdf;
 mod camera;
+mod caustic;
 pub mod control;
 pub mod exact;
 pub mod film;
@@ -56,12 +58,14 @@ use crate::asset::Mesh;
 use crate::color::Rgb;
 use crate::math::{DVec3, exp2, ln};
 use crate::scene::{Light, Material, Paint, PrimitiveId, Scene, Shape, Target, Tonemap};
+use bsdf::Bsdfs;
 use camera::Eye;
+use caustic::Caustics;
 pub use control::{Cancelled, Control, Progress};
 use exact::SurfacePoint;
 pub use film::{Film, Window};
 use film::{MOST_SAMPLES, Pixel};
-use lanes::{Lanes, One, Word};
+use lanes::{Lanes, Mask, One, Word};
 pub use level::Level;
 use light::Lights;
 use materials::Materials;
@@ -71,7 +75,7 @@ use path::Sharing;
 pub use prepass::Prepass;
 use queue::{Arrived, Job, Jobs, View};
 use rayon::prelude::*;
-use shape::{Face, Hits, decode, slot};
+use shape::{Face, Hits, Points, decode, slot};
 use space::Space;
 use std::collections::BTreeMap;
 use surfaces::Surfaces;
@@ -87,6 +91,9 @@ pub struct Tracer<'s> {
     lights: Lights,
     dielectrics: Dielectrics<'s>,
     eye: Eye,
+    /// How far away things are from the camera in metres, most typically.
+    size: f64,
+    caustics: Caustics,
     sharing: Sharing,
     level: Level,
 }
@@ -154,10 +161,11 @@ const PASS: u32 = 64;
 impl<'s> Tracer<'s> {
     /// Builds what tracing needs: hierarchy, tables of lights and coats.
     pub fn new(scene: &'s Scene) -> Tracer<'s> {
-        let space = Space::new(scene.camera.position, size(scene));
+        let size = size(scene);
+        let space = Space::new(scene.camera.position, size);
         let unit = radiance_unit(peak(scene));
         let surfaces = Surfaces::new(scene, &space);
-        Tracer {
+        let mut tracer = Tracer {
             scene,
             materials: Materials::new(scene, &surfaces, unit),
             lights: Lights::new(scene, &surfaces, &space, unit),
@@ -166,9 +174,18 @@ impl<'s> Tracer<'s> {
             space,
             unit,
             dielectrics: Dielectrics::new(scene),
+            size,
+            caustics: Caustics::default(),
             sharing: Sharing::Both,
             level: Level::best(),
-        }
+        };
+        tracer.caustics = Caustics::new(&tracer);
+        tracer
+    }
+
+    /// Leaves caustics to luck: the same picture on average, but for light of points, which luck never finds.
+    pub fn by_luck(self) -> Tracer<'s> {
+        Tracer { caustics: Caustics::default(), ..self }
     }
 
     /// Traces on certain vector instructions, or if the processor has them not on the best it has below. The picture is
@@ -265,6 +282,19 @@ impl<'s> Tracer<'s> {
     /// Traces paths on the tracer's level.
     fn trace(&self, view: &View, jobs: &mut dyn Jobs) {
         self.level.run(Trace { tracer: self, view, jobs });
+    }
+
+    /// The materials of what was met in the lanes of a mask, their colours by place.
+    #[inline(always)]
+    fn bsdfs<L: Lanes>(&self, l: L, hits: &Hits<L>, points: &Points<L>, met: L::M) -> Bsdfs<L> {
+        let (mut bsdfs, painted) = self.materials.at(l, hits.place, met);
+        for lane in painted.lanes() {
+            let (p, n) = (self.space.world(points.p, lane), space::double(points.n, lane));
+            let shown = self.painted(&hits.lane(lane), p, n);
+            let base = bsdfs.color.get(lane);
+            bsdfs.color.set(lane, [base[0] * shown[0], base[1] * shown[1], base[2] * shown[2]]);
+        }
+        bsdfs
     }
 
     /// The colour that the texture of what was met shows at a point of it.

@@ -8,6 +8,7 @@
 
 use super::Tracer;
 use super::bsdf::{Bsdfs, Kind};
+use super::caustic::walk::{Chains, Here, Luck};
 use super::functions::exp_negative;
 use super::lanes::{Float, Lanes, Mask, One, Word};
 use super::light::{LightSamples, Receivers, Source};
@@ -27,7 +28,7 @@ const FIRST_ROULETTE: u32 = 16;
 
 /// Boundaries that a straight line crosses before it is given up. Only surfaces that coincide but for rounding
 /// could ever hold one that long.
-const MOST_PASSES: u32 = 10_000;
+pub(super) const MOST_PASSES: u32 = 10_000;
 
 /// A ray that meets a surface along it comes from above by this cosine at least, so that what is divided by the
 /// cosine and its square stays finite.
@@ -62,6 +63,8 @@ pub(super) struct Paths<L: Lanes> {
     /// Whether the camera's ray met nothing in front of a transparent background.
     open: L::M,
     media: Media<L>,
+    /// What paths remember of their ways, if caustics are looked for.
+    chains: Option<Chains<L>>,
 }
 
 /// What the paths are inside of.
@@ -79,17 +82,17 @@ struct Media<L: Lanes> {
 ///
 /// Scattering is that of the shading normal, and which side a direction is on is told by the surface's own: what the
 /// two disagree about is black, so that no light leaks through a smooth mesh (Veach 1997, §5.3.2).
-struct Vertices<L: Lanes> {
-    place: L::U,
-    detail: L::U,
-    p: V<L>,
+pub(super) struct Vertices<L: Lanes> {
+    pub(super) place: L::U,
+    pub(super) detail: L::U,
+    pub(super) p: V<L>,
     x: V<L>,
     y: V<L>,
     /// The normal to shade with, on the side that the path comes from.
-    z: V<L>,
+    pub(super) z: V<L>,
     /// The normal of the surface itself, on that side.
-    rim: V<L>,
-    wo: V<L>,
+    pub(super) rim: V<L>,
+    pub(super) wo: V<L>,
     /// Whether the path comes from outside.
     entering: L::M,
 }
@@ -111,28 +114,34 @@ pub(super) fn trace<L: Lanes, O: Observer>(
 #[inline(always)]
 fn rounds<L: Lanes, O: Observer>(l: L, tracer: &Tracer, view: &View, jobs: &mut dyn Jobs, observer: &mut O) {
     let mut queue = Queue::new();
-    let mut paths = Paths::none(l, tracer);
+    let mut paths = Paths::none(l, tracer, view);
     loop {
         paths.refill(l, tracer, view, &mut queue, jobs);
         let alive = paths.alive;
         if !alive.any() {
+            paths.answer(l, tracer, true, jobs, observer);
             return;
         }
         paths.step(l, tracer, jobs, observer);
         let open = paths.open.bits();
         for lane in (alive & !paths.alive).lanes() {
-            jobs.finish(&Arrived {
+            let arrived = Arrived {
                 pixel: paths.pixel.get(lane),
                 radiance: paths.radiance.get(lane),
                 weight: paths.weight.get(lane),
                 open: open >> lane & 1 == 1,
-            });
+            };
+            match &mut paths.chains {
+                Some(chains) => chains.finish(lane, arrived, jobs),
+                None => jobs.finish(&arrived),
+            }
         }
+        paths.answer(l, tracer, false, jobs, observer);
     }
 }
 
 impl<L: Lanes> Paths<L> {
-    fn none(l: L, tracer: &Tracer) -> Paths<L> {
+    fn none(l: L, tracer: &Tracer, view: &View) -> Paths<L> {
         let zero = V::all(l.f(0.0));
         let mut start = Inside::default();
         tracer.dielectrics.enter_at(tracer.surfaces.exact(), tracer.scene.camera.position, &mut start);
@@ -153,6 +162,7 @@ impl<L: Lanes> Paths<L> {
             weight: l.f(1.0),
             open: l.mask(0),
             media: Media { inside: vec![Inside::default(); L::N], any: 0, absorption: zero, start },
+            chains: (view.looks && !tracer.caustics.is_empty()).then(|| Chains::new(l)),
         }
     }
 
@@ -180,6 +190,9 @@ impl<L: Lanes> Paths<L> {
         self.last_pdf = fresh.pick(l.f(f32::INFINITY), self.last_pdf);
         self.radiance = V::pick(fresh, zero, self.radiance);
         self.open = self.open & !fresh;
+        if let Some(chains) = &mut self.chains {
+            chains.forget(l, fresh);
+        }
         if !tracer.dielectrics.is_empty() {
             self.enter_media(tracer, fresh);
         }
@@ -215,13 +228,7 @@ impl<L: Lanes> Paths<L> {
         }
         let points = tracer.surfaces.points(l, &self.rays, &hits, met);
         let entering = points.n.dot(self.rays.d).lt(l.f(0.0));
-        let (mut bsdfs, painted) = tracer.materials.at(l, hits.place, met);
-        for lane in painted.lanes() {
-            let shown =
-                tracer.painted(&hits.lane(lane), tracer.space.world(points.p, lane), double(points.n, lane));
-            let base = bsdfs.color.get(lane);
-            bsdfs.color.set(lane, [base[0] * shown[0], base[1] * shown[1], base[2] * shown[2]]);
-        }
+        let mut bsdfs = tracer.bsdfs(l, &hits, &points, met);
 
         // Account for what the surfaces give by themselves.
         let glowing = met & bsdfs.are(l, Kind::Emitter);
@@ -269,6 +276,19 @@ impl<L: Lanes> Paths<L> {
             self.last_total = total;
         }
 
+        // Look for light that comes by mirrors and glass.
+        if let Some(chains) = &mut self.chains {
+            let here = Here {
+                vertices: &vertices,
+                bsdfs: &bsdfs,
+                throughput: self.throughput,
+                bounces: [self.bounces, self.rough_bounces],
+                insides: &self.media.inside,
+                wet: self.media.any,
+            };
+            chains.look(l, tracer, &here, &self.sampler, rough & !bsdfs.transmit(l));
+        }
+
         // Scatter.
         self.scatter(l, tracer, &bsdfs, &vertices, active, rough, observer);
     }
@@ -282,16 +302,24 @@ impl<L: Lanes> Paths<L> {
             let chance = tracer.lights.chance(l, lamp, &self.last, self.last_total);
             let share = tracer.sharing.found(l, self.last_pdf, density * chance);
             let radiance = lamp.seen(l, self.rays.d, missed) * share;
-            self.add(
-                l,
-                tracer,
-                lamp.source(),
-                (self.bounces, self.rough_bounces),
-                radiance,
-                missed & seen,
-                observer,
-            );
+            let seen = missed & seen;
+            let seen = seen & !self.find_caustics(l, tracer, index, radiance, seen);
+            let counts = (self.bounces, self.rough_bounces);
+            self.add(l, tracer, lamp.source(), counts, radiance, seen, observer);
         }
+    }
+
+    /// Leaves light that was met at the ends of chains to be shared with the looks for it; the lanes where that is so.
+    #[inline(always)]
+    fn find_caustics(&mut self, l: L, tracer: &Tracer, lamp: u32, radiance: V<L>, met: L::M) -> L::M {
+        let Some(chains) = &mut self.chains else { return l.mask(0) };
+        let mut bits = 0;
+        for lane in chains.are_chains(l, met).lanes() {
+            let radiance = self.throughput.times(radiance).get(lane);
+            let bounces = [self.bounces.get(lane), self.rough_bounces.get(lane)];
+            bits |= u32::from(chains.find(tracer, lane, Luck { lamp, radiance, bounces })) << lane;
+        }
+        l.mask(bits)
     }
 
     /// Accounts for glowing surfaces that rays have met, shared with the other way to find them.
@@ -316,6 +344,11 @@ impl<L: Lanes> Paths<L> {
             }
             let found = self.last_pdf.get(lane);
             let share = if found == f32::INFINITY {
+                let lamp = tracer.lights.of_slot(slot(place));
+                let here = l.mask(1 << lane);
+                if lamp.is_some_and(|lamp| self.find_caustics(l, tracer, lamp, radiance, here).any()) {
+                    continue;
+                }
                 1.0
             } else {
                 let last = &self.last;
@@ -518,6 +551,19 @@ impl<L: Lanes> Paths<L> {
         }
         let d = vertices.world(samples.wi);
         samples.some = samples.some & vertices.agree(l, tracer, samples.wi, d);
+        // It is a unit vector but for rounding: one step of Newton's.
+        let d = d * (l.f(1.5) - d.squared() * 0.5);
+        if let Some(chains) = &mut self.chains {
+            let here = Here {
+                vertices,
+                bsdfs,
+                throughput: self.throughput,
+                bounces: [self.bounces, self.rough_bounces],
+                insides: &self.media.inside,
+                wet: self.media.any,
+            };
+            chains.lengthen(l, &here, &samples, d, rough & samples.some & !bsdfs.transmit(l), active);
+        }
         self.throughput = V::pick(samples.some, self.throughput.times(samples.weight), self.throughput);
         let goes_on = samples.some & zero.lt(self.throughput.max());
         self.alive = (self.alive & !active) | goes_on;
@@ -537,8 +583,6 @@ impl<L: Lanes> Paths<L> {
             let thinned = self.thinning / (bsdfs.eta * bsdfs.eta);
             self.thinning = crossing.pick(thinned, self.thinning);
         }
-        // It is a unit vector but for rounding: one step of Newton's.
-        let d = d * (l.f(1.5) - d.squared() * 0.5);
         self.rays.o = V::pick(active, vertices.p, self.rays.o);
         self.rays.d = V::pick(active, d, self.rays.d);
         self.rays.start = active.pick_word(vertices.place, self.rays.start);
@@ -552,6 +596,21 @@ impl<L: Lanes> Paths<L> {
             self.alive = self.alive & !ends;
             let stays = roulette & !ends;
             self.throughput = V::pick(stays, self.throughput * (l.f(1.0) / survival), self.throughput);
+        }
+    }
+
+    /// Answers what paths wait to know of caustics, if that is worth it or they can wait no longer.
+    #[inline(always)]
+    fn answer<O: Observer>(
+        &mut self,
+        l: L,
+        tracer: &Tracer,
+        now: bool,
+        jobs: &mut dyn Jobs,
+        observer: &mut O,
+    ) {
+        if let Some(chains) = &mut self.chains {
+            chains.answer(l, tracer, now, jobs, observer);
         }
     }
 
@@ -675,7 +734,7 @@ fn seen_through(
 
 /// The share of light that is left after a distance in a medium (Beer and Lambert).
 #[inline(always)]
-fn transmission<L: Lanes>(l: L, absorption: V<L>, distance: L::F) -> V<L> {
+pub(super) fn transmission<L: Lanes>(l: L, absorption: V<L>, distance: L::F) -> V<L> {
     V::new(left(l, absorption.x, distance), left(l, absorption.y, distance), left(l, absorption.z, distance))
 }
 
@@ -689,7 +748,7 @@ fn left<L: Lanes>(l: L, absorption: L::F, distance: L::F) -> L::F {
 
 /// One lane of a vector.
 #[inline(always)]
-fn one<L: Lanes>(v: V<L>, lane: usize) -> V<One> {
+pub(super) fn one<L: Lanes>(v: V<L>, lane: usize) -> V<One> {
     V::splat(One, v.get(lane))
 }
 
@@ -715,7 +774,7 @@ impl Sharing {
     /// What counts of light that was found by chance, of density `found`, where a light could have been sampled
     /// with density `gathered`.
     #[inline(always)]
-    fn found<L: Lanes>(self, l: L, found: L::F, gathered: L::F) -> L::F {
+    pub(super) fn found<L: Lanes>(self, l: L, found: L::F, gathered: L::F) -> L::F {
         match self {
             Sharing::Both => power_heuristic(l, found, gathered),
             Sharing::OnlyGathered => {
@@ -728,7 +787,7 @@ impl Sharing {
 
     /// What counts of light that was sampled.
     #[inline(always)]
-    fn gathered<L: Lanes>(self, l: L, gathered: L::F, found: L::F) -> L::F {
+    pub(super) fn gathered<L: Lanes>(self, l: L, gathered: L::F, found: L::F) -> L::F {
         match self {
             Sharing::Both => power_heuristic(l, gathered, found),
             Sharing::OnlyGathered => l.f(1.0),

@@ -35,7 +35,8 @@ const BRIGHT: f64 = 0.9;
 
 pub(super) fn prepass(tracer: &Tracer) -> Prepass {
     let eye = Eye::with(&tracer.scene.camera, [CELLS; 2], Filter::Box, &tracer.space);
-    let view = View::new(&eye, SEED);
+    // Where light is looked for depends on the size of the picture.
+    let view = View::new(&eye, SEED).by_luck();
     let rows: Vec<Row> = (0..CELLS)
         .into_par_iter()
         .map(|row| {

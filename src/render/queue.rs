@@ -51,12 +51,19 @@ pub trait Jobs {
 pub struct View<'a> {
     eye: &'a Eye,
     seed: [u32; 2],
+    /// Whether caustics are looked for.
+    pub(super) looks: bool,
 }
 
 impl<'a> View<'a> {
     /// Rays of an eye, with random numbers of a seed.
     pub fn new(eye: &'a Eye, seed: u64) -> View<'a> {
-        View { eye, seed: seed_key(seed) }
+        View { eye, seed: seed_key(seed), looks: true }
+    }
+
+    /// The same with caustics left to luck.
+    pub fn by_luck(self) -> View<'a> {
+        View { looks: false, ..self }
     }
 }
 

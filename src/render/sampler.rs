@@ -23,6 +23,10 @@ pub enum Pair {
     Light,
     /// Which light, and which of its parts.
     Choice,
+    /// Whether to look for a caustic, and by which chain.
+    Seed,
+    /// Where on the lamp of a caustic.
+    Chain,
 }
 
 impl Pair {
@@ -35,12 +39,18 @@ impl Pair {
             Pair::Lobe => 3,
             Pair::Light => 4,
             Pair::Choice => 5,
+            // Far behind all others.
+            Pair::Seed => CAUSTIC,
+            Pair::Chain => CAUSTIC + 1,
         }
     }
 }
 
 /// Pairs of each vertex.
 const EACH: u32 = 4;
+/// Where the pairs for caustics begin: so far on that no others come there, so that nothing depends on them where there
+/// are no caustics.
+const CAUSTIC: u32 = 1 << 24;
 /// 2³² over the golden ratio: it spreads successive pairs over all bits.
 const GOLDEN: u32 = 0x9e37_79b9;
 

@@ -396,6 +396,34 @@ impl<'s> Surfaces<'s> {
         points
     }
 
+    /// How the unit normals of points change with small steps along their surfaces. Smooth meshes are taken for flat.
+    #[inline(always)]
+    pub fn bend<L: Lanes>(
+        &self,
+        l: L,
+        hits: &Hits<L>,
+        points: &Points<L>,
+        steps: [V<L>; 2],
+        met: L::M,
+    ) -> [V<L>; 2] {
+        let slots = met.pick_word(hits.place >> FACE_BITS, l.u(0));
+        let mut rows = [0; MOST];
+        slots.store(&mut rows);
+        let [.., curvature] = l.gather(&self.bends, &rows);
+        let mut changes = [steps[0] * curvature, steps[1] * curvature];
+        let bent = met & !slots.below(l.u(self.starts[2])) & slots.below(l.u(self.starts[3]));
+        for lane in bent.lanes() {
+            let quadric = &self.quadrics[rows[lane] as usize - self.starts[2] as usize];
+            let face = decode(hits.place.get(lane), hits.detail.get(lane));
+            let [p, n] = [points.p, points.n].map(|v| V::splat(One, v.get(lane)));
+            let steps = steps.map(|step| V::splat(One, step.get(lane)));
+            let bent = quadric.bend(&Points { p, n, shading: n }, face, steps);
+            changes[0].set(lane, bent[0].get(0));
+            changes[1].set(lane, bent[1].get(0));
+        }
+        changes
+    }
+
     /// The point of a quadric, or of what is met exactly.
     fn other_point(&self, ray: &Rays<One>, hit: &Hits<One>) -> Points<One> {
         let at = slot(hit.place.get(0));

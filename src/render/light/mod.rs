@@ -8,6 +8,7 @@ mod panorama;
 mod surface;
 
 use super::Tracer;
+use super::caustic::goal::{Goal, Target};
 use super::exact::SurfacePoint;
 use super::lanes::{Float, Lanes, Mask, One, Word, apart};
 use super::shape::{Face, Points, Rays, encode};
@@ -186,6 +187,22 @@ impl Lights {
     /// Whether there is nothing to sample.
     pub fn is_empty(&self) -> bool {
         self.lamps.is_empty()
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.lamps.len()
+    }
+
+    /// What chains of mirrors and glass may lead to: lamps that have a place. A sky has none, and chance finds it well.
+    pub fn goals(&self) -> Vec<Goal> {
+        let goals = (0..).zip(&self.lamps).filter_map(|(index, lamp)| lamp.goal(index));
+        goals.filter(|goal| goal.strength > 0.0 && goal.strength < f32::INFINITY).collect()
+    }
+
+    /// About the irradiance at a receiver, were nothing in between.
+    pub fn irradiance(&self, receiver: &Receivers<One>) -> f32 {
+        self.lamps.iter().map(|lamp| lamp.estimate(One, receiver)).sum()
     }
 
     /// Whether there is more than one, or one of several parts.
@@ -413,6 +430,45 @@ impl Lamp {
     /// What it is.
     pub fn source(&self) -> Source {
         self.source
+    }
+
+    /// What chains of mirrors and glass may lead to, if it has a place.
+    fn goal(&self, index: u32) -> Option<Goal> {
+        let strength = self.strength;
+        let (target, strength) = match &self.kind {
+            Kind::Point { position } | Kind::Spot { position, .. } => {
+                (Target::Near { center: *position, radius: 0.0 }, 4.0 * PI as f32 * strength)
+            }
+            Kind::Sun { direction, sine_squared } => {
+                let solid_angle = if *sine_squared > 0.0 { PI as f32 * sine_squared } else { 1.0 };
+                let sine = sine_squared.sqrt();
+                (Target::Far { direction: *direction, sine }, strength * solid_angle)
+            }
+            Kind::Sphere { center, radius, .. } => {
+                let area = 4.0 * PI as f32 * radius * radius;
+                (Target::Near { center: *center, radius: *radius }, PI as f32 * strength * area)
+            }
+            Kind::Surface(surface) => {
+                let radius = surface.extent_squared.sqrt();
+                (Target::Near { center: surface.center, radius }, PI as f32 * strength * surface.area)
+            }
+            Kind::Sky | Kind::Panorama(_) => return None,
+        };
+        Some(Goal { source: self.source, lamp: index, target, strength })
+    }
+
+    /// What a ray in a direction from beyond all surfaces sees of a lamp that is no surface: radiance; of a point that lies
+    /// ahead its intensity, of a distant one without a disc its irradiance.
+    pub fn along(&self, d: V<One>) -> Option<[f32; 3]> {
+        let share = match &self.kind {
+            Kind::Spot { cone, .. } => cone.share(One, -d),
+            Kind::Sun { direction, sine_squared } => {
+                let off = V::<One>::splat(One, *direction).cross(d).squared();
+                f32::from(u8::from(*sine_squared == 0.0 || off <= *sine_squared))
+            }
+            _ => 1.0,
+        };
+        (share > 0.0).then(|| self.radiance.map(|v| v * share))
     }
 
     /// The radiance of what is seen in directions beyond the scene, in multiples of the unit, in the lanes of a mask.

@@ -1,7 +1,7 @@
 //! Quadrics: ellipsoids and hyperboloids, cut by two planes, with or without caps.
 
 use super::{Face, Nature, Points, Rays, place};
-use crate::render::lanes::{Float, Lanes, Mask, Word};
+use crate::render::lanes::{Float, Lanes, Mask, One, Word};
 use crate::render::space::Space;
 use crate::render::vector::{V, single};
 use crate::scene::shape;
@@ -114,6 +114,23 @@ impl Quadric {
         let best =
             nearer(l, best, enter + shift, inside.holds(enter), upwards.pick_word(low_face, high_face));
         nearer(l, best, leave + shift, inside.holds(leave), upwards.pick_word(high_face, low_face))
+    }
+
+    /// How the unit normal of a point changes with small steps along a face. The gradient is linear in the place, so its
+    /// change is exact; then its length is made 1 again.
+    pub fn bend(&self, point: &Points<One>, face: Face, steps: [V<One>; 2]) -> [V<One>; 2] {
+        if face != Face::Side {
+            return [V::all(0.0); 2];
+        }
+        let [x, y, z] = self.rows.map(|row| V::splat(One, row));
+        let world = |o: V<One>| x * o.x + y * o.y + z * o.z;
+        let o = self.object(One, point.p - V::splat(One, self.middle));
+        let length = world(V::new(o.x, o.y * self.sign + self.slope, o.z)).squared().sqrt();
+        steps.map(|step| {
+            let o = self.object(One, step);
+            let change = world(V::new(o.x, o.y * self.sign, o.z));
+            (change - point.n * point.n.dot(change)) * (1.0 / length)
+        })
     }
 
     /// The point of a face next to a point that lies on it but for rounding, with the outward normal.

@@ -4,6 +4,7 @@ mod acne;
 mod adapter;
 mod bsdfs;
 mod cameras;
+mod caustics;
 mod determinism;
 mod glass;
 mod lights;

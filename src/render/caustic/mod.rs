@@ -1,0 +1,133 @@
+//! Caustics: light that comes by mirrors and clear glass to a surface that scatters.
+//!
+//! A path that is scattered at random finds such light only by luck. So it is looked for: photons from the lamps say
+//! by which chains of polished surfaces light comes to a place ([`photons`], [`seeds`]); Newton's method, on the
+//! derivatives of the very chain that a path would follow, turns a chain to the centre of its lamp ([`chain`],
+//! [`aim`]); and about the direction that was found, one is drawn from the ellipse that the chain carries to the
+//! lamp's disc ([`aim::Lobe`]). The light of that lamp counts if the ray meets it, shared with the finds of luck by the
+//! power heuristic: both ways draw a direction at the same surface, so their densities compare as they are.
+//! Whatever no seed leads to is left to luck, so nothing is lost and nothing is counted twice.
+//!
+//! To a lamp without size there is no luck, and its chain is solved exactly; all seeds of the place that lead to the same
+//! chain are known, and with them the probability to have found it.
+//!
+//! Paths note what they want to know ([`walk`]) and go on; when there are enough of these to fill all lanes they are
+//! answered together ([`looks`]). Where a look is worth it is decided by roulette. All depends on the scene and the place
+//! alone, so a pixel's value does not depend on others.
+//!
+//! Photons as seeds of chains are those of "Photon-driven manifold sampling", Proceedings of the ACM on Computer Graphics
+//! and Interactive Techniques 7 (3), 2024; walks on chains go back to Wenzel Jakob and Steve Marschner, "Manifold
+//! exploration", 2012.
+
+pub mod aim;
+pub mod chain;
+pub mod goal;
+mod looks;
+mod photons;
+mod seeds;
+pub mod walk;
+
+use super::Tracer;
+use super::lanes::One;
+use super::light::{Lights, Receivers};
+use super::vector::V;
+use chain::Ways;
+use goal::Goal;
+use seeds::{Cell, Seed, Seeds};
+
+/// Where the caustics of a scene come from.
+#[derive(Default)]
+pub struct Caustics {
+    goals: Vec<Goal>,
+    /// For each lamp which goal it is, if any.
+    goal_of: Vec<Option<u32>>,
+    seeds: Option<Seeds>,
+}
+
+impl Caustics {
+    /// Sends photons through a scene. Without polished surfaces or without lamps there is nothing to do, ever.
+    pub fn new(tracer: &Tracer) -> Caustics {
+        let casters = photons::casters(tracer);
+        if casters.is_empty() || !tracer.scene.trace.indirect {
+            return Caustics::default();
+        }
+        let goals = tracer.lights.goals();
+        let photons = photons::photons(tracer, &goals, &casters);
+        let Some(seeds) = Seeds::new(photons, |p, hoped| effort(&tracer.lights, p, hoped)) else {
+            return Caustics::default();
+        };
+        let mut goal_of = vec![None; tracer.lights.len()];
+        for (index, goal) in (0..).zip(&goals) {
+            goal_of[goal.lamp as usize] = Some(index);
+        }
+        Caustics { goals, goal_of, seeds: Some(seeds) }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.seeds.is_none()
+    }
+
+    /// What leads to light at a place, on the side of a normal; none if nothing does.
+    fn hope(&self, p: V<One>, n: V<One>) -> Option<Hope<'_>> {
+        let seeds = self.seeds.as_ref()?;
+        let cell = seeds.around(p.get(0))?;
+        let total = seeds.of(cell).iter().map(|seed| seed.weight(n)).sum::<f32>();
+        (total > 0.0).then_some(Hope { seeds, cell, n, total })
+    }
+
+    /// The goal that a lamp is, if rays find it by chance too.
+    fn goal_of(&self, lamp: u32) -> Option<u32> {
+        let goal = *self.goal_of.get(lamp as usize)?;
+        goal.filter(|&goal| !self.goals[goal as usize].target.is_point())
+    }
+}
+
+/// The seeds of a place that may lead to light.
+#[derive(Clone, Copy)]
+struct Hope<'c> {
+    seeds: &'c Seeds,
+    cell: Cell,
+    n: V<One>,
+    /// Sum of their weights.
+    total: f32,
+}
+
+impl<'c> Hope<'c> {
+    /// The seeds that lead to a lamp by a certain way, by their place in the cell, each with the probability to be chosen.
+    fn by(self, ways: Ways, goal: u32) -> impl Iterator<Item = (u32, &'c Seed, f32)> {
+        let seeds = (0..).zip(self.seeds.of(self.cell));
+        let led = seeds.filter(move |(_, seed)| seed.ways == ways && seed.goal == goal);
+        led.map(move |(index, seed)| (index, seed, seed.weight(self.n) / self.total))
+            .filter(|(.., share)| *share > 0.0)
+    }
+
+    /// Chooses a seed, by its place in the cell; the number is made uniform again for further use.
+    fn choose(self, u: f32) -> Option<(u32, &'c Seed, f32)> {
+        let mut left = u * self.total;
+        let mut chosen = None;
+        for (index, seed) in (0..).zip(self.seeds.of(self.cell)) {
+            let weight = seed.weight(self.n);
+            if weight > 0.0 {
+                chosen = Some((index, seed, (left / weight).clamp(0.0, 1.0 - f32::EPSILON)));
+                if left < weight {
+                    break;
+                }
+                left -= weight;
+            }
+        }
+        chosen
+    }
+}
+
+/// How often light is looked for where all comes by chains, and the least of it where any does.
+const EFFORT: f32 = 0.3;
+const LEAST_EFFORT: f32 = 0.03;
+
+/// How often to look for light at a place: by the irradiance that is hoped for, beside what comes without caustics.
+/// Variance times cost is least when each place is looked at in proportion to what it may add to the picture.
+fn effort(lights: &Lights, p: [f32; 3], hoped: f32) -> f32 {
+    let p = V::splat(One, p);
+    let direct = lights.irradiance(&Receivers { p, n: V::splat(One, [0.0, 0.0, 1.0]), open: true });
+    (EFFORT * hoped / (hoped + direct)).max(LEAST_EFFORT)
+}
