@@ -64,12 +64,7 @@ pub fn probe<L: Lanes>(
 
 /// By how much rays miss a lamp, how that changes, and how far ahead the lamp is.
 #[inline(always)]
-pub fn missed<L: Lanes>(
-    l: L,
-    beams: &Beams<L>,
-    to: V<L>,
-    far: L::M,
-) -> ([L::F; 2], [[L::F; 2]; 2], L::F) {
+pub fn missed<L: Lanes>(l: L, beams: &Beams<L>, to: V<L>, far: L::M) -> ([L::F; 2], [[L::F; 2]; 2], L::F) {
     let (o, d) = (beams.rays.o, beams.rays.d);
     let distance = (to - o).dot(d);
     let (x, y) = basis(l, V::pick(far, to, d));
@@ -264,8 +259,7 @@ impl Lobe {
         let place =
             [0, 1].map(|i| (self.probe.miss[i] + components[0] * a[i] + components[1] * b[i]) / self.size);
         let squared = squared::<One>(place);
-        let disc =
-            if squared <= ENLARGED * ENLARGED { FRAC_1_PI / (ENLARGED * ENLARGED) } else { 0.0 };
+        let disc = if squared <= ENLARGED * ENLARGED { FRAC_1_PI / (ENLARGED * ENLARGED) } else { 0.0 };
         let tail = FRAC_1_PI / ((1.0 + squared) * (1.0 + squared));
         let density = TAIL * tail + (1.0 - TAIL) * disc;
         density * self.probe.spread() / (self.size * self.size) / (along * along * along)

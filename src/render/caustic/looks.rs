@@ -3,9 +3,11 @@
 use super::aim::{Aims, Lobe, Probes, aim, enough, missed, most};
 use super::chain::{Beams, Met, Ways, WaysOf, follow, meet};
 use super::goal::{Goal, Target};
+use super::search::{Random, draws_until, is_same};
 use super::seeds::Cell;
 use super::{Caustics, Hope};
 use crate::color::Rgb;
+use crate::render::Tracer;
 use crate::render::bsdf::Bsdfs;
 use crate::render::lanes::{Float, Lanes, MOST, Mask, One, Word, apart};
 use crate::render::light::{BRIGHTEST, Source};
@@ -14,7 +16,6 @@ use crate::render::observer::{Contribution, Observer};
 use crate::render::queue::{Arrived, Jobs};
 use crate::render::shape::{NOWHERE, Rays, slot};
 use crate::render::vector::{V, basis};
-use crate::render::Tracer;
 
 /// Something that a path wants to know of a place that it has come by.
 #[derive(Clone, Copy)]
@@ -56,6 +57,13 @@ pub enum Wanted {
         rest: f32,
         /// Numbers to draw a direction with.
         u: [f32; 2],
+        /// How the light is scattered to the camera.
+        scattering: Scattering,
+    },
+    /// The light that comes from a lamp without size by a chain that no seed of the place knows.
+    Unknown {
+        /// The key of random numbers.
+        key: u64,
         /// How the light is scattered to the camera.
         scattering: Scattering,
     },
@@ -135,9 +143,6 @@ struct Aimed {
     w: V<One>,
     density: f32,
 }
-
-/// Directions so near to each other, by the square of their distance, are the same.
-const SAME: f32 = 1e-6;
 
 impl Looks {
     /// How many there are to answer.
@@ -228,7 +233,7 @@ impl Looks {
         work.answers.clear();
         work.answers.resize(list.len(), [0.0; 3]);
         let caustics = &tracer.caustics;
-        work.plan(caustics, list);
+        work.plan(caustics, tracer.scene.trace.bounces, list);
         work.probes.clear();
         let mut from = 0;
         while from < work.tasks.len() {
@@ -237,7 +242,7 @@ impl Looks {
             aim_all(l, tracer, (list, insides), &tasks[from..to], inside, probes);
             from = to;
         }
-        work.judge(caustics, tracer, list);
+        work.judge(tracer, list, insides);
         let mut from = 0;
         while from < work.chains.len() {
             let to = work.chains.len().min(from + L::N);
@@ -250,9 +255,22 @@ impl Looks {
 
 impl Work {
     /// Lists what to aim: for each look all seeds of its place that lead to its lamp by its way.
-    fn plan(&mut self, caustics: &Caustics, list: &[Look]) {
+    fn plan(&mut self, caustics: &Caustics, most_bounces: u32, list: &mut [Look]) {
         self.tasks.clear();
         for (index, look) in (0..).zip(list) {
+            if let (Wanted::Unknown { key, .. }, Some(search)) = (look.wanted, &caustics.search) {
+                let draw = search.draw(&mut Random::new(key));
+                (look.ways, look.goal) = (draw.ways, draw.goal);
+                look.bounces[0] += look.ways.count();
+                if look.bounces[0] > most_bounces {
+                    continue;
+                }
+                let p = V::splat(One, look.p);
+                self.tasks.push(Task { look: index, seed: UNKNOWN, share: 0.0, towards: draw.towards(p) });
+                if let Some(hope) = caustics.hope(p, V::splat(One, look.n)) {
+                    (look.cell, look.total) = (hope.cell, hope.total);
+                }
+            }
             let Some(hope) = hope(caustics, look) else { continue };
             for (seed, known, share) in hope.by(look.ways, look.goal) {
                 let towards = hope.seeds.towards(known, V::splat(One, look.p));
@@ -262,15 +280,15 @@ impl Work {
     }
 
     /// Draws directions to follow about what was aimed, and answers what asks for no more than densities.
-    fn judge(&mut self, caustics: &Caustics, tracer: &Tracer, list: &[Look]) {
+    fn judge(&mut self, tracer: &Tracer, list: &[Look], insides: &[Inside]) {
+        let caustics = &tracer.caustics;
         self.chains.clear();
         let mut from = 0;
         while from < self.tasks.len() {
             let index = self.tasks[from].look;
             let look = &list[index as usize];
             let count = self.tasks[from..].iter().take_while(|task| task.look == index).count();
-            let (tasks, probes) =
-                (&self.tasks[from..from + count], &self.probes[from..from + count]);
+            let (tasks, probes) = (&self.tasks[from..from + count], &self.probes[from..from + count]);
             from += count;
             let size = caustics.goals[look.goal as usize].target.size();
             let density = |w: V<One>| {
@@ -280,6 +298,15 @@ impl Work {
             };
             let (seed, rest, u) = match look.wanted {
                 Wanted::Light { seed, rest, u, .. } => (seed, rest, u),
+                Wanted::Unknown { key, .. } => {
+                    let inside = &insides[index as usize];
+                    if tasks[0].seed == UNKNOWN
+                        && let Some((w, density)) = unknown(tracer, (look, inside), key, probes)
+                    {
+                        self.chains.push(Aimed { look: index, w, density });
+                    }
+                    continue;
+                }
                 Wanted::Share { w, odds, radiance } => {
                     let share = tracer.sharing.found(One, odds, density(V::splat(One, w)));
                     self.answers[index as usize] = radiance.map(|v| v * share);
@@ -290,8 +317,7 @@ impl Work {
             let Some(own) = own.filter(|own| own.some) else { continue };
             let aimed = if size == 0.0 {
                 let root = own.root();
-                let same = |probe: &Probes<One>| (probe.root() - root).squared() < SAME;
-                let found = tasks.iter().zip(probes).filter(|(_, probe)| probe.some && same(probe));
+                let found = tasks.iter().zip(probes).filter(|(_, probe)| is_same(probe, root));
                 let probability = found.map(|(task, _)| task.share).sum();
                 Aimed { look: index, w: own.w, density: probability }
             } else {
@@ -304,6 +330,29 @@ impl Work {
             }
         }
     }
+}
+
+/// A seed that is none.
+const UNKNOWN: u32 = u32::MAX;
+
+/// The direction of a chain that was found at random, the first of some probes, and about the probability to find it, if
+/// none of the others, which seeds led to, is the same.
+fn unknown(
+    tracer: &Tracer,
+    (look, inside): (&Look, &Inside),
+    key: u64,
+    probes: &[Probes<One>],
+) -> Option<(V<One>, f32)> {
+    let search = tracer.caustics.search.as_ref()?;
+    let (found, known) = probes.split_first().filter(|(found, _)| found.some)?;
+    let root = found.root();
+    if known.iter().any(|probe| is_same(probe, root)) {
+        return None;
+    }
+    let (rays, _) = starts(One, std::iter::once(look));
+    let draws =
+        draws_until(tracer, search, (rays, inside), (look.ways, look.goal), root, &mut Random::new(!key));
+    Some((found.w, look.effort / draws as f32))
 }
 
 fn hope<'c>(caustics: &'c Caustics, look: &Look) -> Option<Hope<'c>> {
@@ -468,7 +517,8 @@ fn scattered<'a, L: Lanes>(
 ) -> (V<L>, L::F) {
     let mut by = [None; MOST];
     for (scattering, look) in by.iter_mut().zip(looks.clone()) {
-        if let Wanted::Light { scattering: here, .. } = look.wanted {
+        if let Wanted::Light { scattering: here, .. } | Wanted::Unknown { scattering: here, .. } = look.wanted
+        {
             *scattering = Some(here);
         }
     }
@@ -494,7 +544,13 @@ fn scattered<'a, L: Lanes>(
 
 /// What a ray shows of a lamp that its chain was to lead to: the radiance; of a point its intensity, of a distant one
 /// without a disc its irradiance.
-fn shown<L: Lanes>(tracer: &Tracer, goal: &Goal, beams: &Beams<L>, met: &Met<L>, lane: usize) -> Option<[f32; 3]> {
+fn shown<L: Lanes>(
+    tracer: &Tracer,
+    goal: &Goal,
+    beams: &Beams<L>,
+    met: &Met<L>,
+    lane: usize,
+) -> Option<[f32; 3]> {
     let meets = met.some.bits() >> lane & 1 == 1;
     let lamp = tracer.lights.lamp(goal.lamp);
     let d = V::splat(One, beams.rays.d.get(lane));

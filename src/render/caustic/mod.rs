@@ -9,7 +9,7 @@
 //! Whatever no seed leads to is left to luck, so nothing is lost and nothing is counted twice.
 //!
 //! To a lamp without size there is no luck, and its chain is solved exactly; all seeds of the place that lead to the same
-//! chain are known, and with them the probability to have found it.
+//! chain are known, and with them the probability to have found it. What the seeds do not know is searched for ([`search`]).
 //!
 //! Paths note what they want to know ([`walk`]) and go on; when there are enough of these to fill all lanes they are
 //! answered together ([`looks`]). Where a look is worth it is decided by roulette. All depends on the scene and the place
@@ -24,6 +24,7 @@ pub mod chain;
 pub mod goal;
 mod looks;
 mod photons;
+mod search;
 mod seeds;
 pub mod walk;
 
@@ -33,6 +34,7 @@ use super::light::{Lights, Receivers};
 use super::vector::V;
 use chain::Ways;
 use goal::Goal;
+use search::Search;
 use seeds::{Cell, Seed, Seeds};
 
 /// Where the caustics of a scene come from.
@@ -42,6 +44,8 @@ pub struct Caustics {
     /// For each lamp which goal it is, if any.
     goal_of: Vec<Option<u32>>,
     seeds: Option<Seeds>,
+    /// For lamps without size.
+    search: Option<Search>,
 }
 
 impl Caustics {
@@ -53,6 +57,7 @@ impl Caustics {
         }
         let goals = tracer.lights.goals();
         let photons = photons::photons(tracer, &goals, &casters);
+        let search = Search::new(&goals, &photons);
         let Some(seeds) = Seeds::new(photons, |p, hoped| effort(&tracer.lights, p, hoped)) else {
             return Caustics::default();
         };
@@ -60,7 +65,15 @@ impl Caustics {
         for (index, goal) in (0..).zip(&goals) {
             goal_of[goal.lamp as usize] = Some(index);
         }
-        Caustics { goals, goal_of, seeds: Some(seeds) }
+        Caustics { goals, goal_of, seeds: Some(seeds), search }
+    }
+
+    /// Forgets all seeds, so that what luck does not find has to be searched for.
+    #[cfg(test)]
+    pub fn forget_seeds(&mut self) {
+        if let Some(seeds) = &mut self.seeds {
+            seeds.forget();
+        }
     }
 
     /// Whether there are none.
@@ -120,9 +133,10 @@ impl<'c> Hope<'c> {
     }
 }
 
-/// How often light is looked for where all comes by chains, and the least of it where any does.
-const EFFORT: f32 = 0.3;
-const LEAST_EFFORT: f32 = 0.03;
+/// How often light is looked for where all comes by chains, and the least of it where any does: probabilities, of which
+/// the rest is for [`search::EFFORT`].
+const EFFORT: f32 = 0.5;
+const LEAST_EFFORT: f32 = 0.05;
 
 /// How often to look for light at a place: by the irradiance that is hoped for, beside what comes without caustics.
 /// Variance times cost is least when each place is looked at in proportion to what it may add to the picture.

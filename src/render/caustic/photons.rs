@@ -226,13 +226,7 @@ impl Emission<'_, '_> {
 
     /// A ray from the lamp towards a polished surface, as origin and direction.
     fn emitted(&self, number: u32) -> ([f32; 3], [f32; 3]) {
-        let sampler = Sampler::new(
-            One,
-            seed_key(SEED),
-            One.u(self.batch.goal),
-            One.u(0),
-            One.u(number),
-        );
+        let sampler = Sampler::new(One, seed_key(SEED), One.u(self.batch.goal), One.u(0), One.u(number));
         let pair = |pair: Pair| sampler.pair(One, pair, One.u(0));
         let (u, v, [choice, _]) = (pair(Pair::Film), pair(Pair::Lens), pair(Pair::Choice));
         let total = self.shares.last().map_or(0.0, |&sum| sum);

@@ -43,8 +43,8 @@ struct Track {
     toward: [f32; 3],
 }
 
-/// A place where photons lie together.
-#[derive(Clone, Copy, Debug)]
+/// A place where photons lie together; by default one without any.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Cell {
     /// Its seeds.
     first: u32,
@@ -119,6 +119,12 @@ impl Seeds {
             seeds.push(found, single(leaf.cell.center()), &effort);
         }
         Some(seeds)
+    }
+
+    /// Empties all cells.
+    #[cfg(test)]
+    pub fn forget(&mut self) {
+        self.cells.fill(Cell::default());
     }
 
     /// Adds what was found for the next cell.

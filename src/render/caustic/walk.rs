@@ -2,6 +2,9 @@
 
 use super::chain::{MOST_EVENTS, Ways, WaysOf};
 use super::looks::{Look, Looks, Scattering, Wanted};
+use super::search;
+use super::seeds::Cell;
+use crate::render::Observer;
 use crate::render::Tracer;
 use crate::render::bsdf::{Bsdfs, Samples};
 use crate::render::lanes::{Float, Lanes, MOST, Mask, Word};
@@ -10,7 +13,6 @@ use crate::render::path::{Vertices, one};
 use crate::render::queue::{Arrived, Jobs};
 use crate::render::sampler::{Pair, Sampler};
 use crate::render::vector::V;
-use crate::render::Observer;
 
 /// For each lane the last surface that might have looked for a caustic, and the chain that its path has come by since.
 pub struct Chains<L: Lanes> {
@@ -49,6 +51,20 @@ pub struct Here<'a, L: Lanes> {
     pub insides: &'a [Inside],
     /// The lanes inside of anything.
     pub wet: u32,
+}
+
+impl<L: Lanes> Here<'_, L> {
+    fn scattering(&self, lane: usize) -> Scattering {
+        Scattering {
+            throughput: self.throughput.get(lane),
+            wo: self.vertices.wo.get(lane),
+            rim: self.vertices.rim.get(lane),
+            kind: self.bsdfs.kind.get(lane),
+            color: self.bsdfs.color.get(lane),
+            alpha: self.bsdfs.alpha.get(lane),
+            coat: self.bsdfs.coat.get(lane),
+        }
+    }
 }
 
 /// Light that a path has met by chance at the end of its chain.
@@ -95,17 +111,16 @@ impl<L: Lanes> Chains<L> {
 
     /// Notes places to look for light from, now and then.
     #[inline(always)]
-    pub fn look(
-        &mut self,
-        l: L,
-        tracer: &Tracer,
-        here: &Here<L>,
-        sampler: &Sampler<L>,
-        wanted: L::M,
-    ) {
+    pub fn look(&mut self, l: L, tracer: &Tracer, here: &Here<L>, sampler: &Sampler<L>, wanted: L::M) {
         let Some(seeds) = &tracer.caustics.seeds else { return };
         let carried = here.throughput.luminance().lesser(l.f(1.0));
         let [chance, choice] = sampler.pair(l, Pair::Seed, here.bounces[0]);
+        if tracer.caustics.search.is_some() {
+            let searched = wanted & (l.f(1.0) - carried * search::EFFORT).lt(chance);
+            for lane in searched.lanes() {
+                self.search(here, lane, chance.get(lane), choice.get(lane));
+            }
+        }
         let wanted = wanted & chance.lt(carried * seeds.most_effort());
         if !wanted.any() {
             return;
@@ -125,15 +140,7 @@ impl<L: Lanes> Chains<L> {
             if bounces + events > tracer.scene.trace.bounces {
                 continue;
             }
-            let scattering = Scattering {
-                throughput: here.throughput.get(lane),
-                wo: vertices.wo.get(lane),
-                rim: vertices.rim.get(lane),
-                kind: here.bsdfs.kind.get(lane),
-                color: here.bsdfs.color.get(lane),
-                alpha: here.bsdfs.alpha.get(lane),
-                coat: here.bsdfs.coat.get(lane),
-            };
+            let scattering = here.scattering(lane);
             let look = Look {
                 ticket: self.ticket(lane),
                 bounces: [bounces + events, rough_bounces],
@@ -150,6 +157,30 @@ impl<L: Lanes> Chains<L> {
             };
             self.looks.push(look, &here.insides[lane]);
         }
+    }
+
+    /// Notes a place to search for chains from that no seed knows.
+    fn search(&mut self, here: &Here<L>, lane: usize, chance: f32, choice: f32) {
+        let vertices = here.vertices;
+        let (p, n) = (one(vertices.p, lane), one(vertices.z, lane));
+        let look = Look {
+            ticket: self.ticket(lane),
+            bounces: here.bounces.map(|count| count.get(lane) + 1),
+            p: p.get(0),
+            n: n.get(0),
+            place: vertices.place.get(lane),
+            detail: vertices.detail.get(lane),
+            effort: search::EFFORT * one(here.throughput, lane).luminance().min(1.0),
+            cell: Cell::default(),
+            total: 0.0,
+            ways: Ways::NONE,
+            goal: 0,
+            wanted: Wanted::Unknown {
+                key: u64::from(chance.to_bits()) << 32 | u64::from(choice.to_bits()),
+                scattering: here.scattering(lane),
+            },
+        };
+        self.looks.push(look, &here.insides[lane]);
     }
 
     /// The lanes of a mask that have come by a chain.
@@ -179,11 +210,7 @@ impl<L: Lanes> Chains<L> {
             total: hope.total,
             ways,
             goal,
-            wanted: Wanted::Share {
-                w: self.w.get(lane),
-                odds: self.odds.get(lane),
-                radiance: luck.radiance,
-            },
+            wanted: Wanted::Share { w: self.w.get(lane), odds: self.odds.get(lane), radiance: luck.radiance },
         };
         self.looks.push(look, &self.inside[lane]);
         true

@@ -40,7 +40,9 @@ fn a_point_light_through_a_ball_gives_what_paraxial_optics_say() {
         .with(sphere(v(0.0, below, 0.0), r), glass(n))
         .with_light(point(v(0.0, below + above, 0.0)))
         .bounces(3);
-    assert_shows(&scene, 40_000, 5.0 * through / (x * x) / PI, 2e-3);
+    let expected = 5.0 * through / (x * x) / PI;
+    assert_shows(&scene, 40_000, expected, 2e-3);
+    assert_found_without_seeds(&scene, expected);
 }
 
 #[test]
@@ -65,6 +67,16 @@ fn a_point_light_by_a_mirror_ball_gives_what_curvatures_say() {
         .with_light(point(light + shift))
         .bounces(2);
     assert_shows(&scene, 40_000, expected, 2e-3);
+    assert_found_without_seeds(&scene, expected);
+}
+
+/// Asserts that what no seed knows is found by searching.
+fn assert_found_without_seeds(scene: &Scene, expected: f64) {
+    let mut tracer = Tracer::new(scene);
+    tracer.caustics.forget_seeds();
+    let (mean, error) = measure(&tracer, 160_000);
+    assert!((mean - expected).abs() < 5.0 * error, "shows {mean} ± {error}, expected {expected}");
+    assert!(error < 0.1 * expected, "shows {mean} ± {error}");
 }
 
 /// Lamps so large that luck finds them well too.
@@ -198,14 +210,10 @@ fn derivatives_of_chains_are_those_of_small_differences() {
                     let numeric = (after - before) / (2.0 * f64::from(STEP));
                     let change = DVec2::new(f64::from(probed.change[i][0]), f64::from(probed.change[i][1]));
                     let [a, b] = probed.miss.map(f64::from);
-                    let turning =
-                        if matches!(target, Target::Near { .. }) { 8.0 * a.hypot(b) } else { 0.0 };
+                    let turning = if matches!(target, Target::Near { .. }) { 8.0 * a.hypot(b) } else { 0.0 };
                     let scale = change.length() + 0.1;
                     let error = (numeric - change).length();
-                    assert!(
-                        error < 2e-3 * scale + turning * scale,
-                        "{name} {ways:?}: {numeric} {change}"
-                    );
+                    assert!(error < 2e-3 * scale + turning * scale, "{name} {ways:?}: {numeric} {change}");
                     count += 1;
                 }
             }
@@ -231,6 +239,28 @@ fn directions_about_a_chain_have_their_density() {
         |[choice, a, b]| Some(double(lobe.sample(choice as f32, [a as f32, b as f32]), 0)),
         |w| f64::from(lobe.pdf(V::splat(One, single(w)))),
     );
+}
+
+#[test]
+fn caustics_are_the_same_bits_in_any_number_of_lanes() {
+    for (name, scene) in lit_by_luck().into_iter().chain([("point", lit_by_a_point())]) {
+        let films = Level::ALL.map(|level| {
+            let tracer = Tracer::new(&scene).on(level);
+            let shown = Shown { stops: 0.0, tonemap: Tonemap::Neutral };
+            let target = Target::Samples(64);
+            let window = Window::whole(scene.trace.size);
+            tracer.render(window, target, &tracer.prepass(), shown, &Control::new()).unwrap().film
+        });
+        assert!(films.iter().all(|film| *film == films[0]), "{name}");
+    }
+}
+
+/// A glass ball over a wide floor.
+fn lit_by_a_point() -> Scene {
+    let mut scene =
+        floor_at(0.3).with(sphere(v(0.0, 1.5, 0.0), 1.0), glass(1.5)).with_light(point(v(0.0, 5.0, 0.0)));
+    scene.camera.half_extent = DVec2::splat(0.5);
+    scene
 }
 
 #[test]
