@@ -1,6 +1,6 @@
 //! Which vector instructions the tracer runs on.
 
-use super::lanes::{Eight, One, Sixteen};
+use super::lanes::{Eight, Four, One, Sixteen};
 use fearless_simd::Level as Processor;
 
 /// A set of vector instructions, the narrowest first. Which are there depends on the processor.
@@ -45,11 +45,11 @@ impl Level {
             Level::One => {}
             Level::Avx512 if let Some(simd) = processor.as_avx512() => return task.run(Sixteen(simd)),
             Level::Avx512 | Level::Avx2 if let Some(simd) = processor.as_avx2() => {
-                return task.run(Sixteen(simd));
+                return task.run(Eight(simd));
             }
             _ => {
                 if let Some(simd) = processor.as_sse2() {
-                    return task.run(Eight(simd));
+                    return task.run(Four(simd));
                 }
             }
         }
@@ -57,7 +57,7 @@ impl Level {
         if self > Level::One
             && let Some(simd) = processor.as_neon()
         {
-            return task.run(Eight(simd));
+            return task.run(Four(simd));
         }
         let _ = processor;
         task.run(One)

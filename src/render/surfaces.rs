@@ -335,7 +335,8 @@ impl<'s> Surfaces<'s> {
     pub fn meet_other(&self, slot: u32, ray: &Rays<One>) -> Hits<One> {
         if self.is_quadric(slot) {
             let (t, place) = self.quadrics[(slot - self.starts[2]) as usize].meet(One, ray, slot);
-            return if t > 0.0 { Hits { t, place, detail: One.u(0) } } else { Hits::nothing(One) };
+            let met = t > 0.0 && t < f32::INFINITY;
+            return if met { Hits { t, place, detail: One.u(0) } } else { Hits::nothing(One) };
         }
         let (hit, slop) = self.exact.meet(self.primitive(slot), slot, ray);
         if hit.t > slop { hit } else { Hits::nothing(One) }

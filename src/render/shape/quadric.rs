@@ -1,6 +1,6 @@
 //! Quadrics: ellipsoids and hyperboloids, cut by two planes, with or without caps.
 
-use super::{Face, Nature, Points, Rays, place};
+use super::{Face, Nature, Points, ROUNDING, Rays, place};
 use crate::render::lanes::{Float, Lanes, Mask, One, Word};
 use crate::render::space::Space;
 use crate::render::vector::{V, single};
@@ -21,6 +21,8 @@ pub struct Quadric {
     pub constant: f32,
     /// Ends in object space's y.
     pub ends: [f32; 2],
+    /// Heights that lie certainly between the ends, whatever was rounded.
+    pub within: [f32; 2],
     /// Whether finite ends are closed by caps.
     pub capped: bool,
     /// 1 if rays are looked at from where they are next to the middle, 0 if from their start.
@@ -33,6 +35,8 @@ impl Quadric {
     /// The quadric in the coordinates of the tracer.
     pub fn new(quadric: &shape::Quadric, space: &Space, nature: Nature) -> Quadric {
         let m = quadric.object_from_world.matrix3 * space.unit();
+        let (low, high) = (quadric.low as f32, quadric.high as f32);
+        let margin = |end: f32| if end.is_finite() { end.abs().max(1.0) * ROUNDING } else { 0.0 };
         let bounded = shape::Shape::Quadric(Box::new(*quadric)).bounds().is_some();
         Quadric {
             rows: [0, 1, 2].map(|i| single(m.row(i))),
@@ -40,7 +44,8 @@ impl Quadric {
             sign: quadric.form.y_sign() as f32,
             slope: quadric.form.y_slope() as f32,
             constant: quadric.form.constant() as f32,
-            ends: [quadric.low as f32, quadric.high as f32],
+            ends: [low, high],
+            within: [low + margin(low), high - margin(high)],
             capped: quadric.capped,
             near: f32::from(u8::from(bounded)),
             glows: nature.glows,
@@ -59,7 +64,8 @@ impl Quadric {
     ///
     /// Whether a crossing belongs to the side or a cap is decided by comparing distances alone: a root counts if it
     /// lies within the stretch between the two planes, a plane's if it lies within the inside of the quadric. At
-    /// the seam exactly one of the two holds, whatever was rounded, so a ray cannot slip in between.
+    /// the seam exactly one of the two holds, whatever was rounded, so a ray cannot slip in between. A ray that starts
+    /// next to the seam starts inside of the face that it is not on.
     #[inline(always)]
     pub fn meet<L: Lanes>(&self, l: L, rays: &Rays<L>, slot: u32) -> (L::F, L::U) {
         let none = l.f(f32::INFINITY);
@@ -78,11 +84,17 @@ impl Quadric {
         let (s, h) = (self.sign, self.slope);
         let a = d.x * d.x + d.y * d.y * s + d.z * d.z;
         let b = o.x * d.x + (o.y * s + h) * d.y + o.z * d.z;
-        let c = on_side.pick(zero, o.x * o.x + (o.y * s + 2.0 * h) * o.y + o.z * o.z + self.constant);
+        let across = o.x * o.x + o.z * o.z;
+        let c = on_side.pick(zero, across + (o.y * s + 2.0 * h) * o.y + self.constant);
         let m = o.cross(d);
         let linear = ((d.x * m.z - d.z * m.x) * 2.0 + d.y * d.y * h) * h;
         let discriminant = linear - (m.x * m.x * s + m.y * m.y + m.z * m.z * s) - a * self.constant;
         let root = on_side.pick(b.magnitude(), discriminant.root());
+        // A start on a cap is inside of the side.
+        let inner = -(across * ROUNDING);
+        let on_rim = (on_low | on_high) & inner.lt(c);
+        let c = on_rim.pick(inner, c);
+        let root = on_rim.pick((b * b - a * inner).root(), root);
         let q = -(b + root.signed_as(b));
         let (first, second) = (c / q, q / a);
         let crosses = first.le(first) & second.le(second);
@@ -92,10 +104,12 @@ impl Quadric {
         let all_inside = !crosses & c.lt(zero);
 
         // Where the line is between the two planes.
+        let [lowest, highest] = self.within;
+        let y = on_side.pick(o.y.greater(l.f(lowest)).lesser(l.f(highest)), o.y);
         let level = d.y.le(zero) & zero.le(d.y);
-        let between = l.f(self.ends[0]).le(o.y) & o.y.le(l.f(self.ends[1]));
-        let low = on_low.pick(-shift, (l.f(self.ends[0]) - o.y) / d.y);
-        let high = on_high.pick(-shift, (l.f(self.ends[1]) - o.y) / d.y);
+        let between = l.f(self.ends[0]).le(y) & y.le(l.f(self.ends[1]));
+        let low = on_low.pick(-shift, (l.f(self.ends[0]) - y) / d.y);
+        let high = on_high.pick(-shift, (l.f(self.ends[1]) - y) / d.y);
         let upwards = zero.lt(d.y);
         let nothing = level & !between;
         let enter = level.pick(nothing.pick(none, -none), upwards.pick(low, high));

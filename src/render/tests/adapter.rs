@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::render::exact::SurfacePoint;
+use crate::render::light::Receivers;
 use crate::render::observer::Place;
 use crate::render::sampler::{Pair, Sampler, seed_key};
 use crate::render::shape::{NOWHERE, Rays, encode};
@@ -14,6 +15,14 @@ pub struct Ray {
     pub origin: DVec3,
     pub direction: DVec3,
     pub start: Option<Place>,
+}
+
+impl Ray {
+    /// As the tracer sees it: near the origin it is then exactly the same ray.
+    pub fn rounded(self) -> Ray {
+        let round = |v: DVec3| v.as_vec3().as_dvec3();
+        Ray { origin: round(self.origin), direction: round(self.direction), ..self }
+    }
 }
 
 /// What it meets.
@@ -58,6 +67,10 @@ impl Accel {
                 face: decode(place, hit.detail.get(0)),
             },
         })
+    }
+
+    pub fn contains(&self, id: PrimitiveId, p: DVec3) -> bool {
+        self.surfaces.exact().contains(id, p)
     }
 
     pub fn occluded(&self, ray: &Ray, distance: f64) -> bool {
@@ -181,5 +194,87 @@ impl Bsdf {
     fn both(&self, wo: DVec3, wi: DVec3) -> (V<One>, f32) {
         let [wo, wi] = [wo, wi].map(|w| V::splat(One, single(w)));
         self.bsdf.eval(One, &self.materials.coats, wo, wi, true)
+    }
+}
+
+/// The lights of a scene.
+pub struct Lamps {
+    tracer: Tracer<'static>,
+}
+
+/// A direction to a light, drawn from a point.
+#[derive(Debug)]
+pub struct Light {
+    pub wi: DVec3,
+    /// In metres.
+    pub distance: f64,
+    pub radiance: Rgb,
+    /// Without the choice of the light.
+    pub pdf: f64,
+}
+
+impl Lamps {
+    pub fn of(scene: &Scene) -> Lamps {
+        Lamps { tracer: Tracer::new(Box::leak(Box::new(scene.clone()))) }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.tracer.lights.is_empty()
+    }
+
+    fn receiver(&self, p: DVec3, n: Option<DVec3>) -> Receivers<One> {
+        let p = V::splat(One, single(self.tracer.space.point(p)));
+        Receivers { p, n: V::splat(One, single(n.unwrap_or(DVec3::Y))), open: n.is_none() }
+    }
+
+    /// Draws a direction from a point, with the normal there if it matters.
+    pub fn sample(&self, p: DVec3, n: Option<DVec3>, choice: f64, u: [f64; 2]) -> Option<Light> {
+        let receiver = self.receiver(p, n);
+        let lights = &self.tracer.lights;
+        let total = lights.total(One, &receiver);
+        let (index, _, part) = lights.choose(One, &receiver, total, choice as f32);
+        let u = u.map(|u| u as f32);
+        let light = lights.sample(One, &self.tracer, &receiver, (index, part), u, true);
+        light.some.then(|| Light {
+            wi: double(light.wi, 0),
+            distance: f64::from(light.distance) * self.tracer.space.unit(),
+            radiance: double(light.radiance, 0) * self.tracer.unit,
+            pdf: f64::from(light.pdf),
+        })
+    }
+
+    /// The density with which a direction is drawn: to a light beyond the scene, or else to what is met first.
+    pub fn pdf(&self, p: DVec3, n: Option<DVec3>, w: DVec3) -> f64 {
+        let receiver = self.receiver(p, n);
+        let lights = &self.tracer.lights;
+        let total = lights.total(One, &receiver);
+        let w = V::splat(One, single(w));
+        if let [index] = *lights.beyond() {
+            let lamp = lights.lamp(index);
+            let (seen, density) = lamp.beyond(One, &receiver, w, true);
+            return if seen { f64::from(density * lights.chance(One, lamp, &receiver, total)) } else { 0.0 };
+        }
+        let ray = Rays { o: receiver.p, d: w, start: One.u(NOWHERE), detail: One.u(0) };
+        let surfaces = &self.tracer.surfaces;
+        let hit = surfaces.closest(One, &ray, f32::INFINITY, One.u(u32::MAX), true);
+        let place = hit.place.get(0);
+        if place == NOWHERE {
+            return 0.0;
+        }
+        let point = surfaces.points(One, &ray, &hit, true);
+        if point.n.dot(w) >= 0.0 && surfaces.is_closed(slot(place)) {
+            return 0.0;
+        }
+        let face = decode(place, hit.detail.get(0));
+        f64::from(lights.pdf_of_surface(slot(place), face, &receiver, total, w, &point))
+    }
+
+    /// How far a ray goes until it meets something, in metres.
+    pub fn seen(&self, p: DVec3, w: DVec3) -> f64 {
+        let start = One.u(NOWHERE);
+        let o = V::splat(One, single(self.tracer.space.point(p)));
+        let ray = Rays { o, d: V::splat(One, single(w)), start, detail: One.u(0) };
+        let hit = self.tracer.surfaces.closest(One, &ray, f32::INFINITY, One.u(u32::MAX), true);
+        f64::from(hit.t) * self.tracer.space.unit()
     }
 }

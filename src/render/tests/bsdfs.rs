@@ -17,9 +17,10 @@ fn check_density(bsdf: &Bsdf) {
         let draw = |[lobe, a, b]: [f64; 3]| {
             let sample = bsdf.sample(wo, lobe, [a, b]).filter(|sample| !sample.specular)?;
             let (pdf, f) = (bsdf.pdf(wo, sample.wi), bsdf.eval(wo, sample.wi));
-            assert!((sample.pdf / pdf - 1.0).abs() < 5e-3, "{} {pdf}", sample.pdf);
+            // The direction was rounded, and a narrow or grazing lobe changes much over so little.
+            assert!((sample.pdf / pdf - 1.0).abs() < 1e-3, "{} {pdf}", sample.pdf);
             assert!(
-                (sample.weight * pdf - f).abs().max_element() <= 5e-3 * f.max_element(),
+                (sample.weight * pdf - f).abs().max_element() <= 1e-3 * f.max_element(),
                 "{}",
                 sample.weight
             );
@@ -56,7 +57,8 @@ fn reflection_is_the_same_both_ways() {
             Bsdf::of(Material::Plastic { color: color.into(), ior: 1.7, alpha: 0.3 }),
         ] {
             let (f, g) = (bsdf.eval(a, b) / b.z, bsdf.eval(b, a) / a.z);
-            assert!((f - g).abs().max_element() <= 2e-4 * f.max_element() + 1e-6);
+            // The half vector of two directions is known to 6e-8 over its length.
+            assert!((f - g).abs().max_element() <= 1e-4 * f.max_element() + 1e-6);
         }
         // Refracted radiance over the square of the index is the same both ways.
         let eta = 1.5;

@@ -3,6 +3,7 @@
 use super::*;
 use crate::asset::Mesh;
 use crate::scene::shape::Instance;
+use adapter::{Accel, Ray, intersect};
 use std::sync::Arc;
 
 /// A ball of triangles: an octahedron, each face of which is divided so often.
@@ -37,6 +38,65 @@ pub(super) fn mesh(mesh: &Arc<Mesh>, matrix: DMat3, at: DVec3, smooth: bool) -> 
 
 fn skewed() -> DMat3 {
     DMat3::from_cols(v(0.8, 0.5, 0.1), v(-0.4, 0.9, 0.2), v(0.1, -0.3, -1.2))
+}
+
+#[test]
+fn the_tree_of_a_mesh_finds_what_its_triangles_give() {
+    let ball = ball(4);
+    assert!(ball.is_closed() && ball.len() == 2048);
+    let shape = mesh(&ball, skewed(), v(0.3, -0.2, 0.1), true);
+    let Shape::Mesh(instance) = &shape else { unreachable!("it is one") };
+    let accel = Accel::of(&scene(DVec3::ZERO, DVec3::Z).with(shape.clone(), white()));
+    let mut random = Random(2);
+    let mut met = 0;
+    for _ in 0..4000 {
+        let mut ray = Ray { origin: random.point(2.0), direction: random.direction(), start: None }.rounded();
+        assert_eq!(accel.contains(PrimitiveId(0), ray.origin), shape.contains(ray.origin));
+        // Through, from triangle to triangle.
+        loop {
+            let listed = (0..ball.len() as u32).filter_map(|i| crossed(instance.corners(i), &ray));
+            let listed = listed.min_by(f64::total_cmp);
+            let Some(hit) = accel.closest(&ray) else {
+                assert_eq!(listed, None);
+                break;
+            };
+            assert!(listed.is_some_and(|t| (t - hit.t).abs() < 1e-6), "{listed:?} {hit:?}");
+            let point = accel.point(&ray, &hit);
+            assert!(point.p.distance(ray.origin + hit.t * ray.direction) < 1e-6);
+            let inside = shape.contains(ray.origin + 0.5 * hit.t * ray.direction);
+            assert_eq!(point.n.dot(ray.direction) > 0.0, inside, "normals point out");
+            ray = Ray { origin: point.p, start: Some(hit.place), ..ray };
+            met += 1;
+        }
+    }
+    assert!(met > 200, "{met}");
+}
+
+/// Where a ray goes through a triangle, if it does so ahead of what its start may be rounded by.
+fn crossed([a, b, c]: [DVec3; 3], ray: &Ray) -> Option<f64> {
+    let turn = |p: DVec3, q: DVec3| ray.direction.dot((p - ray.origin).cross(q - ray.origin));
+    let sides = [turn(a, b), turn(b, c), turn(c, a)];
+    let n = (b - a).cross(c - a);
+    let t = n.dot(a - ray.origin) / n.dot(ray.direction);
+    let through = sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0);
+    (through && t > 1e-6).then_some(t)
+}
+
+#[test]
+fn no_ray_passes_between_triangles() {
+    // Aimed at corners and edges from the middle, where sloppy tests see gaps.
+    let ball = ball(2);
+    let shape = mesh(&ball, DMat3::IDENTITY, DVec3::ZERO, false);
+    let mut random = Random(6);
+    for triangle in 0..ball.len() as u32 {
+        let [a, b, _] = ball.corners(triangle);
+        for share in [0.0, 0.5, random.next(), random.next()] {
+            for origin in [DVec3::ZERO, random.point(0.3)] {
+                let direction = (a + share * (b - a) - origin).normalize();
+                assert!(intersect(&shape, &Ray { origin, direction, start: None }, None).is_some());
+            }
+        }
+    }
 }
 
 #[test]

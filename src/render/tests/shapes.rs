@@ -102,7 +102,7 @@ fn ray(random: &mut Random, shape: &Shape, i: usize) -> Ray {
         2 => (random.point(1.0) - origin).normalize(),
         _ => random.direction(),
     };
-    Ray { origin, direction, start: None }
+    Ray { origin, direction, start: None }.rounded()
 }
 
 #[test]
@@ -119,8 +119,8 @@ fn a_million_rays_meet_what_bisection_finds() {
             let agrees = match (found, expected) {
                 (None, None) => true,
                 (Some((t, face)), Some((s, other))) => {
-                    // The function is known to about 1e-16 of its size, the root to that over its slope.
-                    face == other && (t - s).abs() <= 2e-4 * s.max(1.0)
+                    // The function is known to about 6e-8 of its size, the root to that over its slope.
+                    face == other && (t - s).abs() <= 1e-4 * s.max(1.0)
                 }
                 _ => false,
             };
@@ -130,15 +130,15 @@ fn a_million_rays_meet_what_bisection_finds() {
                 check_point(shape, &ray, t, face);
             }
         }
-        // Tangents and seams, where rounding decides.
-        assert!(disputed <= each / 1000, "{shape:?}: {disputed} of {each} differ");
+        // Tangents and seams, where rounding decides, and of single precision more often than of double.
+        assert!(disputed <= each / 3000, "{shape:?}: {disputed} of {each} differ");
     }
 }
 
 fn check_point(shape: &Shape, ray: &Ray, t: f64, face: Face) {
     let near = ray.origin + t * ray.direction;
     let point = surface_point(shape, ray, t, face);
-    assert!(point.p.distance(near) < 1e-3 * t.max(1.0), "{shape:?} {t}: {near} became {}", point.p);
+    assert!(point.p.distance(near) < 1e-4 * t.max(1.0), "{shape:?} {t}: {near} became {}", point.p);
     assert!((point.n.length() - 1.0).abs() < 1e-6);
     let expected = match (face, shape) {
         (Face::Side, _) => {
@@ -154,11 +154,13 @@ fn check_point(shape: &Shape, ray: &Ray, t: f64, face: Face) {
         }
         _ => unreachable!("only quadrics have caps"),
     };
+    // Next to the tip of a cone a rounding turns it farthest.
     assert!(point.n.distance(expected) < 3e-3, "{shape:?} {face:?}: normal {} is not {expected}", point.n);
 }
 
 #[test]
 fn a_ray_that_starts_on_a_surface_meets_its_other_side_or_nothing() {
+    // Far above what points are rounded by.
     const STEP: f64 = 1e-3;
     let mut random = Random(31);
     let mut told = 0;
@@ -175,8 +177,10 @@ fn a_ray_that_starts_on_a_surface_meets_its_other_side_or_nothing() {
             let beside = intersect(&shape, &ray(start.p + STEP * direction), None);
             match (exact, beside) {
                 (None, None) => {}
+                // The other side of a seam that is nearer than the step.
+                (Some((t, a)), _) if t < STEP && a != place => {}
                 (Some((t, a)), Some((s, b))) if a == b => {
-                    assert!((t - s - STEP).abs() < 1e-3 * t.max(1.0), "{shape:?}: {t} on {a:?}, {s}");
+                    assert!((t - s - STEP).abs() < 1e-4 * t.max(1.0), "{shape:?}: {t} on {a:?}, {s}");
                     told += 1;
                 }
                 // Nearer to a seam than the step.
@@ -203,7 +207,8 @@ fn rays_along_asymptotes_and_in_rulings_are_no_trouble() {
     // Along an asymptote through the middle: q is −1 all the way, only the caps are met.
     let slope = v(1.0, 1.0, 0.0).normalize();
     let hit = intersect(&one, &Ray { origin: DVec3::ZERO, direction: slope, start: None }, None);
-    assert!(hit.is_some_and(|(t, face)| face == Face::High && (t - f64::sqrt(8.0)).abs() < 1e-5), "{hit:?}");
+    // In single precision, numbers from 2 to 4 lie 2.4e-7 apart.
+    assert!(hit.is_some_and(|(t, face)| face == Face::High && (t - f64::sqrt(8.0)).abs() < 5e-7), "{hit:?}");
     // Parallel to one, off the middle: one root.
     let hit = intersect(&one, &Ray { origin: v(3.0, 0.0, 0.0), direction: slope, start: None }, None);
     assert_eq!(hit, None);
@@ -236,7 +241,8 @@ fn the_hierarchy_finds_what_a_list_finds() {
             scene.with(sphere(at, size), white()).with(sphere(at, size), white())
         };
     }
-    scene = scene.with(floor(), white());
+    // Of glass, as the single shapes are: what is opaque lifts rays that start just below it.
+    scene = scene.with(floor(), glass(1.5));
     let accel = Accel::of(&scene);
     for i in 0..20_000 {
         let direction = if i % 9 == 0 { DVec3::X } else { random.direction() };
@@ -251,7 +257,7 @@ fn the_hierarchy_finds_what_a_list_finds() {
         assert_eq!(found, listed);
         let distance = listed.map_or(5.0, |(t, _)| t);
         assert!(!accel.occluded(&ray, distance));
-        assert_eq!(accel.occluded(&ray, distance * 1.001), listed.is_some());
+        assert_eq!(accel.occluded(&ray, distance * 1.0001), listed.is_some());
     }
 }
 

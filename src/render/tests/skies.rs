@@ -5,6 +5,7 @@ use crate::asset::Image;
 use crate::math::{cos, sin};
 use crate::render::path::Sharing;
 use crate::scene::{ImageId, Panorama};
+use adapter::Lamps;
 use std::sync::Arc;
 
 /// A turn about an axis that is none of the coordinates'.
@@ -34,6 +35,38 @@ fn uneven() -> Image {
 fn lit_floor(image: Image, image_from_world: DMat3) -> Scene {
     let below = scene(v(0.0, 0.3, 0.0), DVec3::ZERO).with(floor(), white()).bounces(1);
     with_panorama(below, image, image_from_world)
+}
+
+#[test]
+fn directions_have_their_density() {
+    for (image, turned) in
+        [(uneven(), tilted()), (uneven(), DMat3::IDENTITY), (picture(1, 1, |_, _| 1.0), tilted())]
+    {
+        let lamps = Lamps::of(&lit_floor(image, turned));
+        let pdf = |w: DVec3| lamps.pdf(DVec3::ZERO, None, w);
+        let draw = |[_, a, b]: [f64; 3]| {
+            let sample = lamps.sample(DVec3::ZERO, None, 0.5, [a, b]).unwrap();
+            Some(sample.wi)
+        };
+        assert_density(draw, pdf);
+    }
+}
+
+#[test]
+fn dark_parts_are_not_sampled_and_a_black_sky_is_no_light() {
+    let half = picture(8, 4, |x, _| if x < 4 { 0.0 } else { 1.0 });
+    let lamps = Lamps::of(&lit_floor(half, DMat3::IDENTITY));
+    let mut random = Random(1);
+    let mut bright = 0;
+    for _ in 0..10_000 {
+        let sample = lamps.sample(DVec3::ZERO, None, 0.5, random.pair()).unwrap();
+        // Between the middles of dark pixels nothing is seen: their outer halves alone may be drawn.
+        let column = 8.0 * (0.5 + crate::math::atan2(sample.wi.x, -sample.wi.z) / (2.0 * PI));
+        assert!(!(1.0..3.0).contains(&column), "{}", sample.wi);
+        bright += usize::from(sample.radiance.x > 0.0);
+    }
+    assert!(bright > 9_500, "{bright}");
+    assert!(Lamps::of(&lit_floor(picture(3, 2, |_, _| 0.0), DMat3::IDENTITY)).is_empty());
 }
 
 #[test]

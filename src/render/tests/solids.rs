@@ -1,7 +1,7 @@
 //! Solids and discs of every kind: what holds of all of them, told without their equations.
 
 use super::*;
-use adapter::{Accel, Ray};
+use adapter::{Accel, Lamps, Ray, intersect, surface_point};
 
 /// A map that turns, shears, stretches and moves.
 fn skew() -> crate::math::DAffine3 {
@@ -36,6 +36,107 @@ fn solids_and_a_mesh() -> Vec<(&'static str, Shape)> {
     let mut all = solids();
     all.push(("mesh", meshes::mesh(&meshes::ball(2), skew().matrix3, skew().translation, false)));
     all
+}
+
+/// The first distance at which a ray goes into or out of a solid, by steps and bisection.
+fn march(shape: &Shape, ray: &Ray) -> Option<f64> {
+    const STEPS: u32 = 4000;
+    const FAR: f64 = 8.0;
+    let inside = |t: f64| shape.contains(ray.origin + t * ray.direction);
+    let step = FAR / f64::from(STEPS);
+    let change = (0..STEPS).map(|i| f64::from(i) * step).find(|t| inside(*t) != inside(t + step))?;
+    let (mut low, mut high) = (change, change + step);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if inside(middle) == inside(change) { low = middle } else { high = middle }
+    }
+    Some(0.5 * (low + high))
+}
+
+#[test]
+fn rays_meet_solids_where_a_march_goes_in_and_out() {
+    let mut random = Random(5);
+    for (name, shape) in solids() {
+        let (mut met, mut disputed) = (0, 0);
+        for _ in 0..1500 {
+            let ray = Ray { origin: random.point(2.0), direction: random.direction(), start: None }.rounded();
+            let found = intersect(&shape, &ray, None);
+            match (found, march(&shape, &ray)) {
+                (None, None) => {}
+                (Some((t, face)), Some(s)) if (t - s).abs() < 1e-5 => {
+                    met += 1;
+                    let point = surface_point(&shape, &ray, t, face);
+                    let out = if shape.contains(ray.origin) { 1.0 } else { -1.0 };
+                    assert!(out * point.n.dot(ray.direction) > 0.0, "{name}: {face:?} faces the wrong way");
+                    assert!(shape.contains(point.p - 1e-5 * point.n), "{name} {face:?}");
+                    assert!(!shape.contains(point.p + 1e-5 * point.n), "{name} {face:?}");
+                }
+                // Corners that are thinner than a step.
+                _ => disputed += 1,
+            }
+        }
+        assert!(met > 50 && disputed < 8, "{name}: {met} met, {disputed} disputed");
+    }
+}
+
+/// Points on the surface of a lamp, as its sampling draws them.
+fn drawn(shape: &Shape, random: &mut Random, count: usize) -> Vec<DVec3> {
+    let lamps = Lamps::of(&scene(DVec3::ZERO, DVec3::Z).with(shape.clone(), glow(1.0)));
+    let mut draw = || {
+        let from = 20.0 * random.direction();
+        let light = lamps.sample(from, None, random.next(), random.pair())?;
+        Some(from + light.distance * light.wi)
+    };
+    (0..count).filter_map(|_| draw()).collect()
+}
+
+#[test]
+fn lamps_are_sampled_on_their_surface_within_tight_bounds() {
+    let mut random = Random(12);
+    let disk = ("disk", Shape::Disk(placed(skew().matrix3, skew().translation)));
+    for (name, shape) in solids_and_a_mesh().into_iter().chain([disk]) {
+        let bounds = shape.bounds().expect("it has an end");
+        let mut seen = crate::scene::shape::Bounds::EMPTY;
+        for p in drawn(&shape, &mut random, 40_000) {
+            seen = seen.union(crate::scene::shape::Bounds { min: p, max: p });
+        }
+        // Twenty metres in single precision, to and fro.
+        let slack = 1e-5 * bounds.size().length();
+        assert!((seen.min - bounds.min).min_element() > -slack, "{name}: {seen:?} {bounds:?}");
+        assert!((bounds.max - seen.max).min_element() > -slack, "{name}: {seen:?} {bounds:?}");
+        let gap = (seen.min - bounds.min).max(bounds.max - seen.max).max_element();
+        assert!(gap < 0.03 * bounds.size().max_element(), "{name}: {seen:?} {bounds:?}");
+    }
+}
+
+#[test]
+fn a_lamp_of_a_given_power_radiates_it() {
+    // Seen from all around at a distance, what a convex lamp of radiance 1 gives is π times its area.
+    const FAR: f64 = 1000.0;
+    let mut random = Random(40);
+    let disk = ("disk", Shape::Disk(placed(skew().matrix3, skew().translation)));
+    for (name, shape) in solids_and_a_mesh().into_iter().chain([disk]) {
+        if matches!(name, "tower" | "bowls") {
+            continue;
+        }
+        let lamps = Lamps::of(&scene(DVec3::ZERO, DVec3::Z).with(shape.clone(), glow(1.0)));
+        let (mut sum, mut squares) = (0.0, 0.0);
+        const N: u32 = 40_000;
+        for _ in 0..N {
+            let drawn = lamps.sample(FAR * random.direction(), None, random.next(), random.pair());
+            let irradiance = drawn.map_or(0.0, |light| 1.0 / light.pdf);
+            let flux = irradiance * 4.0 * PI * FAR * FAR;
+            sum += flux / f64::from(N);
+            squares += flux * flux / f64::from(N);
+        }
+        let error = ((squares - sum * sum) / f64::from(N)).sqrt();
+        let sides = if shape.is_closed() { 1.0 } else { 2.0 };
+        let expected = PI * shape.area() * sides;
+        assert!(
+            (sum - expected).abs() < 5.0 * error + 2e-3 * expected,
+            "{name}: {sum} ± {error}, {expected}"
+        );
+    }
 }
 
 #[test]
