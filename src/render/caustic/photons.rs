@@ -33,7 +33,7 @@ pub struct Photon {
 
 /// Photons that are sent out, over all lamps together: so many for each pixel, within limits.
 const SENT_BY_PIXEL: f64 = 0.25;
-const SENT: std::ops::RangeInclusive<f64> = 2048.0..=32768.0;
+const SENT: std::ops::RangeInclusive<f64> = 1024.0..=32768.0;
 /// Photons that are traced together.
 const BATCH: u32 = 1024;
 /// How often a photon is reflected by glass at least. Rare ways are told of more often than they are gone.
