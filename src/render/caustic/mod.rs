@@ -12,7 +12,7 @@
 //! chain are known, and with them the probability to have found it. What the seeds do not know is searched for ([`search`]).
 //!
 //! Paths note what they want to know ([`walk`]) and go on; when there are enough of these to fill all lanes they are
-//! answered together ([`looks`]). Where a look is worth it is decided by roulette. All depends on the scene and the place
+//! answered together ([`looks`], [`answer`]). Where a look is worth it is decided by roulette. All depends on the scene and the place
 //! alone, so a pixel's value does not depend on others.
 //!
 //! Photons as seeds of chains are those of "Photon-driven manifold sampling", Proceedings of the ACM on Computer Graphics
@@ -20,6 +20,7 @@
 //! exploration", 2012.
 
 pub mod aim;
+mod answer;
 pub mod chain;
 pub mod goal;
 mod looks;
