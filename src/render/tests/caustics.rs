@@ -247,7 +247,7 @@ fn caustics_are_the_same_bits_in_any_number_of_lanes() {
         let films = Level::ALL.map(|level| {
             let tracer = Tracer::new(&scene).on(level);
             let shown = Shown { stops: 0.0, tonemap: Tonemap::Neutral };
-            let target = Target::Samples(64);
+            let target = crate::scene::Target::Samples(64);
             let window = Window::whole(scene.trace.size);
             tracer.render(window, target, &tracer.prepass(), shown, &Control::new()).unwrap().film
         });
