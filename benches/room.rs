@@ -12,7 +12,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 #[path = "../tests/oracle/mod.rs"]
-#[allow(dead_code, reason = "tests use more of it")]
+#[allow(unused, reason = "tests use more of it")]
 mod oracle;
 
 const ROUNDS: usize = 5;
