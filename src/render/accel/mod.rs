@@ -227,7 +227,9 @@ impl Leaf {
         let [x, y, z] = &self.center;
         let center = V::<G>::new(g.load(&x[from..]), g.load(&y[from..]), g.load(&z[from..]));
         let places = g.load_words(&self.slots[from..]) << super::shape::FACE_BITS;
-        let ratios = ball::meet(g, ray.o - center, ray.d, g.load(&self.radius[from..]), places.is(ray.start));
+        let radius = g.load(&self.radius[from..]);
+        let on_it = places.is(ray.start) & radius.le(radius);
+        let ratios = ball::meet(g, ray.o - center, ray.d, radius, on_it);
         ratios.over / ratios.under
     }
 

@@ -35,6 +35,26 @@ fn nothing_leaves_a_room_of_giant_spheres() {
 }
 
 #[test]
+fn no_light_leaks_into_a_room_of_giant_spheres_in_any_number_of_lanes() {
+    let centers = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| 1000.0 * axis);
+    let mut room = scene(DVec3::ZERO, v(0.3, 0.2, 1.0)).with_sky(1.0);
+    for center in centers.iter().flat_map(|center| [*center, -*center]) {
+        room = room.with(sphere(center, 940.0), white());
+    }
+    room.camera.half_extent = DVec2::splat(1.5);
+    room.trace.size = [64, 64];
+    let window = Window::whole(room.trace.size);
+    for level in Level::ALL.into_iter().filter(|level| level.is_there()) {
+        let tracer = Tracer::new(&room).on(level);
+        let mut film = Film::new(window, 1.0);
+        tracer.add_samples(&mut film, 0..16, &Control::new()).expect("nobody cancels");
+        let lit =
+            (0..64).flat_map(|y| (0..64).map(move |x| (x, y))).find(|&(x, y)| film.mean(x, y) != Rgb::ZERO);
+        assert_eq!(lit, None, "{level:?}");
+    }
+}
+
+#[test]
 fn a_giant_glass_sphere_is_met_once_from_each_side() {
     let ball = scene(DVec3::ZERO, DVec3::Z).with(sphere(v(0.0, -940.0, 0.0), 940.0), glass(1.5));
     let accel = Accel::of(&ball);

@@ -18,9 +18,9 @@ fn check_density(bsdf: &Bsdf) {
             let sample = bsdf.sample(wo, lobe, [a, b]).filter(|sample| !sample.specular)?;
             let (pdf, f) = (bsdf.pdf(wo, sample.wi), bsdf.eval(wo, sample.wi));
             // The direction was rounded, and a narrow or grazing lobe changes much over so little.
-            assert!((sample.pdf / pdf - 1.0).abs() < 1e-3, "{} {pdf}", sample.pdf);
+            assert!((sample.pdf / pdf - 1.0).abs() < 5e-3, "{} {pdf}", sample.pdf);
             assert!(
-                (sample.weight * pdf - f).abs().max_element() <= 1e-3 * f.max_element(),
+                (sample.weight * pdf - f).abs().max_element() <= 5e-3 * f.max_element(),
                 "{}",
                 sample.weight
             );

@@ -74,7 +74,7 @@ fn a_point_light_by_a_mirror_ball_gives_what_curvatures_say() {
 fn assert_found_without_seeds(scene: &Scene, expected: f64) {
     let mut tracer = Tracer::new(scene);
     tracer.caustics.forget_seeds();
-    let (mean, error) = measure(&tracer, 160_000);
+    let (mean, error) = measure(&tracer, 400_000);
     assert!((mean - expected).abs() < 5.0 * error, "shows {mean} ± {error}, expected {expected}");
     assert!(error < 0.1 * expected, "shows {mean} ± {error}");
 }

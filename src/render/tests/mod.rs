@@ -243,8 +243,16 @@ fn assert_density(mut draw: impl FnMut([f64; 3]) -> Option<DVec3>, pdf: impl Fn(
         })
         .collect();
     let total: f64 = expected.iter().sum();
-    assert!(total < 1.002 * DRAWS as f64, "the density integrates to {}", total / DRAWS as f64);
-    expected.push((DRAWS as f64 - total).max(0.0));
+    // By so much the sum may miss the integral, where a density has an edge.
+    const SLACK: f64 = 0.002 * DRAWS as f64;
+    assert!(total < DRAWS as f64 + SLACK, "the density integrates to {}", total / DRAWS as f64);
+    let none = (DRAWS as f64 - total).max(0.0);
+    let yielded_none = observed[ACROSS * AROUND] as f64;
+    if none.max(yielded_none) < SLACK {
+        observed.pop();
+    } else {
+        expected.push(none);
+    }
     assert_distributed(&observed, &expected);
 }
 
