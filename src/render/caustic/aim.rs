@@ -62,9 +62,12 @@ pub fn probe<L: Lanes>(
     Probes { some: alive & finite & l.f(0.0).lt(ahead), w, miss, change }
 }
 
+/// See [`Probes::miss`] and [`Probes::change`]; and how far ahead the lamp is.
+type Missed<L> = ([<L as Lanes>::F; 2], [[<L as Lanes>::F; 2]; 2], <L as Lanes>::F);
+
 /// By how much rays miss a lamp, how that changes, and how far ahead the lamp is.
 #[inline(always)]
-pub fn missed<L: Lanes>(l: L, beams: &Beams<L>, to: V<L>, far: L::M) -> ([L::F; 2], [[L::F; 2]; 2], L::F) {
+pub fn missed<L: Lanes>(l: L, beams: &Beams<L>, to: V<L>, far: L::M) -> Missed<L> {
     let (o, d) = (beams.rays.o, beams.rays.d);
     let distance = (to - o).dot(d);
     let (x, y) = basis(l, V::pick(far, to, d));

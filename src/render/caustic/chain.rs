@@ -295,11 +295,11 @@ impl<L: Lanes> Beams<L> {
         let inverse = passes.pick(one / met.bsdfs.eta, one);
         let refracted = passes.pick(fresnel.cosine, -cosine);
         let factor = inverse * cosine - refracted;
-        for i in 0..2 {
-            let dcosine = -(self.dd[i].dot(n) + d.dot(dn[i]));
+        for (dd, dn) in self.dd.iter_mut().zip(dn) {
+            let dcosine = -(dd.dot(n) + d.dot(dn));
             let bent = inverse * inverse * cosine * dcosine / refracted;
-            let change = self.dd[i] * inverse + n * (inverse * dcosine - bent) + dn[i] * factor;
-            self.dd[i] = V::pick(gone, change, self.dd[i]);
+            let change = *dd * inverse + n * (inverse * dcosine - bent) + dn * factor;
+            *dd = V::pick(gone, change, *dd);
         }
         let w = (d * inverse + n * factor).normalized(l);
         self.rays.d = V::pick(gone, w, d);
