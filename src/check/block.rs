@@ -17,16 +17,31 @@ impl<'a> Checker<'a> {
     /// The body of a branch of `for` or `if`, or of a file: statements, and no fields.
     pub(super) fn items<'t>(&mut self, entries: &'t [Entry], inside: &str) -> Vec<Item<'t>> {
         let mut items = vec![];
+        // Fields in a row are one slip, and none behind a thing whose `{` is missing.
+        let mut explained = false;
         for entry in entries {
-            match entry {
-                Entry::Statement(statement) => items.push(Item::Statement(statement)),
-                Entry::Rows(rows) => items.push(Item::Rows(rows)),
-                Entry::Broken(broken) => items.push(Item::Broken(broken)),
+            let lost = match entry {
                 Entry::Field(field) => {
-                    self.report(errors::field_of_nothing(&field.name, inside));
+                    if !explained {
+                        self.report(errors::field_of_nothing(&field.name, inside));
+                    }
                     self.infer(&field.value);
+                    true
                 }
-            }
+                Entry::Broken(broken) => {
+                    items.push(Item::Broken(broken));
+                    broken.name.is_some()
+                }
+                Entry::Statement(statement) => {
+                    items.push(Item::Statement(statement));
+                    false
+                }
+                Entry::Rows(rows) => {
+                    items.push(Item::Rows(rows));
+                    false
+                }
+            };
+            explained = lost;
         }
         items
     }

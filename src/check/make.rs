@@ -37,7 +37,11 @@ impl Checker<'_> {
             }
         }
         for construct in misplaced {
-            self.make(construct, None);
+            // One that is not known either is one slip.
+            let name = &construct.kind.first.text;
+            if schema::kind(name).is_some() || self.lookup(name).is_some() {
+                self.make(construct, None);
+            }
         }
         let inside = (block.is_some() && holds).then(|| self.keep_names());
         if block.is_some() {
@@ -367,6 +371,10 @@ impl Checker<'_> {
             }
             Tree::Paren(inner) => return self.field_value(field, inner),
             _ => {}
+        }
+        if let Some(diagnostic) = self.unknown_value(field.ty, value) {
+            self.report(diagnostic);
+            return Expr::invalid(value.span);
         }
         let (checked, ty) = self.infer(value);
         if ty == Type::Invalid {

@@ -185,6 +185,10 @@ impl<'a> Checker<'a> {
 
     /// A value where a type was declared.
     pub(super) fn declared_value(&mut self, name: &str, declared: &Declared, value: &ast::Expr) -> Expr {
+        if let Some(diagnostic) = self.unknown_declared(declared, value) {
+            self.report(diagnostic);
+            return Expr::invalid(value.span);
+        }
         let (checked, ty) = self.infer(value);
         if ty == Type::Invalid || *declared == Declared::Invalid {
             return Expr::invalid(value.span);

@@ -59,9 +59,11 @@ pub(super) fn out_of_range(kind: KindId, field: &Field, value: &Value, span: Spa
     if is_color(field.ty) && bad > field.range.high {
         let message = format!("this `{}` reflects more than it receives", kind.get().name);
         let diagnostic = Diagnostic::new(Code::E0402, message, span);
-        return Some(
-            diagnostic.at(format!("a channel of {shown}")).help("no channel of a reflectance is above 1"),
-        );
+        let help = match bad > 2.0 && bad <= 255.0 {
+            true => "channels go from 0 to 1; those of 0 to 255 are written `#d94f30`",
+            false => "no channel of a reflectance is above 1",
+        };
+        return Some(diagnostic.at(format!("a channel of {shown}")).help(help));
     }
     let what = if is_color(field.ty) { "channels of " } else { "" };
     let message = format!("{what}`{}` must be {allowed}, this is {shown}", field.name);
@@ -107,6 +109,13 @@ pub(super) fn no_direction(field: &Field, span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0403, format!("`{}` has length 0, and so no direction", field.name), span)
         .at("points nowhere")
         .help("such as `(0, 1, 0)` for upwards")
+}
+
+/// `scale(0)`
+pub(super) fn scale_to_nothing(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0403, "a `scale` of 0 flattens all to nothing", span)
+        .at("leaves no extent")
+        .help("give factors other than 0; what is flat is a `disk`, or a `box` that is thin")
 }
 
 pub(super) fn too_many_textures(span: Span) -> Diagnostic {

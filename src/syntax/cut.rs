@@ -9,8 +9,8 @@
 //! before a line that starts with a binary operator other than `-`, with a word that goes on with a statement such
 //! as `else`, with `.member` or with `{`.
 
-use super::MAX_DEPTH;
 mod brackets;
+mod habits;
 mod lines;
 #[cfg(test)]
 mod tests;
@@ -24,9 +24,9 @@ use std::ops::Range;
 /// Stands in place of text that was reported.
 pub(super) const BLOT: u8 = 1;
 
-/// The most operators between two separators. A chain longer than [`MAX_DEPTH`] is refused later with its
+/// The most operators between two separators. A chain longer than the limit of depth is refused later with its
 /// exact place; this bounds the memory that finding it takes.
-const MAX_OPERATORS: usize = 16 * MAX_DEPTH;
+const MAX_OPERATORS: usize = 8192;
 
 /// The most values between two parentheses.
 const MAX_VALUES: usize = 1_000_000;
@@ -43,6 +43,14 @@ pub(super) struct Cut<'t> {
     pub(super) comments: Vec<Comment>,
     /// What was wrong between the items and with their brackets.
     pub(super) sink: Sink,
+    /// Closers outside all brackets.
+    pub(super) strays: Vec<Stray>,
+}
+
+/// A closer without an opener, or a run of them.
+pub(super) struct Stray {
+    pub(super) span: Span,
+    pub(super) closer: char,
 }
 
 /// What stands between two separators outside all brackets.
@@ -59,14 +67,14 @@ pub(super) struct Item<'t> {
     pub(super) depth: usize,
 }
 
-/// Cuts a text into items.
-pub(super) fn cut(source: SourceId, text: &str) -> Cut<'_> {
-    Cutter::new(source, text, true).run()
+/// Cuts a text into items. Brackets are nested at most `most` deep.
+pub(super) fn cut(source: SourceId, text: &str, most: usize) -> Cut<'_> {
+    Cutter::new(source, text, true, most).run()
 }
 
 /// Takes a text as one item, whatever separates in it.
-pub(super) fn whole(source: SourceId, text: &str) -> Cut<'_> {
-    Cutter::new(source, text, false).run()
+pub(super) fn whole(source: SourceId, text: &str, most: usize) -> Cut<'_> {
+    Cutter::new(source, text, false, most).run()
 }
 
 /// What the last token was, as far as line ends and brackets care.
@@ -140,6 +148,8 @@ struct Cutter<'t> {
     bytes: &'t [u8],
     /// Whether separators outside brackets end an item.
     splits: bool,
+    /// The deepest nesting of brackets.
+    most: usize,
     out: Cut<'t>,
     at: usize,
     /// Column of the first token of this line.
@@ -169,16 +179,19 @@ struct Cutter<'t> {
     /// How many diagnostics and comments there were before the item.
     before_item: (usize, usize),
     ended_in_comment: bool,
+    /// Where comments begin as in other languages.
+    foreign_comments: Vec<Span>,
 }
 
 impl<'t> Cutter<'t> {
-    fn new(source: SourceId, text: &'t str, splits: bool) -> Cutter<'t> {
+    fn new(source: SourceId, text: &'t str, splits: bool, most: usize) -> Cutter<'t> {
         Cutter {
             source,
             text,
             bytes: text.as_bytes(),
             splits,
-            out: Cut { items: vec![], comments: vec![], sink: Sink::new() },
+            most,
+            out: Cut { items: vec![], comments: vec![], sink: Sink::new(), strays: vec![] },
             at: if text.starts_with('\u{feff}') { 3 } else { 0 },
             indent: 0,
             last: Last::Open,
@@ -197,6 +210,7 @@ impl<'t> Cutter<'t> {
             rescans: 0,
             before_item: (0, 0),
             ended_in_comment: false,
+            foreign_comments: vec![],
         }
     }
 
@@ -208,6 +222,7 @@ impl<'t> Cutter<'t> {
                 self.token(gap.first_newline.is_some());
             } else if self.levels.is_empty() || self.layout || self.ended_in_comment {
                 self.close_all(None);
+                self.report_foreign_comments();
                 return self.out;
             } else {
                 self.rescan();
@@ -238,7 +253,9 @@ impl<'t> Cutter<'t> {
         let byte = self.bytes[start];
         if self.levels.is_empty() && self.splits {
             match byte {
-                b',' if self.base.angled == 0 && !self.message_follows() => return self.comma(),
+                b',' if self.base.angled == 0 && !self.is_decimal_comma() && !self.message_follows() => {
+                    return self.comma();
+                }
                 b')' | b']' | b'}' => return self.stray_closer(),
                 _ => {}
             }
@@ -247,6 +264,7 @@ impl<'t> Cutter<'t> {
             self.begin(start);
         }
         self.last = match byte {
+            b'#' | b'-' if self.begins_foreign_comment() => self.foreign_comment(),
             b'(' | b'[' | b'{' => self.open(),
             b')' | b']' | b'}' => self.close(first_on_line),
             b'"' => self.string(),
@@ -338,10 +356,10 @@ impl<'t> Cutter<'t> {
         self.depth += 1;
         let within = |level: &Level| level.ifs + level.angled;
         let nested: usize = self.levels.iter().chain([&self.base]).map(within).sum();
-        if nested > MAX_DEPTH && !self.skipped {
+        if nested > self.most && !self.skipped {
             self.skipped = true;
             let place = self.span(self.at, self.at + 1);
-            self.out.sink.push(errors::deep_brackets(place));
+            self.out.sink.push(errors::deep_brackets(place, self.most));
         }
     }
 
@@ -485,6 +503,8 @@ impl<'t> Cutter<'t> {
         self.layout = true;
         self.out.sink.truncate(self.before_item.0);
         self.out.comments.truncate(self.before_item.1);
+        self.out.strays.retain(|stray| (stray.span.start as usize) < start);
+        self.foreign_comments.retain(|comment| (comment.start as usize) < start);
         self.edits.clear();
         self.levels.clear();
         (self.open, self.beyond) = ([0; 3], 0);

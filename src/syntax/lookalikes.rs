@@ -1,0 +1,144 @@
+//! Characters that look like those of the language: full-width signs, curly quotes, the spaces and dashes of
+//! typesetting. A text that was copied from a page has them. Each sign is reported once, with all its places, and
+//! read as what it looks like.
+
+use super::errors::{self, Sink};
+use crate::span::{SourceId, Span};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+/// So many places of one sign are mended at once.
+const MAX_PLACES: usize = 10_000;
+
+/// The text with each such character in place of what it looks like, as long as it was.
+pub(super) fn read<'t>(source: SourceId, text: &'t str, sink: &mut Sink) -> Cow<'t, str> {
+    if text.is_ascii() {
+        return Cow::Borrowed(text);
+    }
+    let mut reader = Reader { source, text, found: BTreeMap::new(), bytes: None };
+    reader.run();
+    for (means, (first, places)) in &reader.found {
+        if let Some(mut diagnostic) = errors::lookalike(*first, means, places) {
+            for place in places {
+                diagnostic = diagnostic.fix(*place, *means);
+            }
+            sink.push(diagnostic);
+        }
+    }
+    match reader.bytes.map(String::from_utf8) {
+        Some(Ok(text)) => Cow::Owned(text),
+        _ => Cow::Borrowed(text),
+    }
+}
+
+/// What a character looks like; nothing where it is invisible.
+fn looks_like(character: char) -> Option<&'static str> {
+    Some(match character {
+        '：' => ":",
+        '，' | '、' => ",",
+        '；' => ";",
+        '（' => "(",
+        '）' => ")",
+        '｛' => "{",
+        '｝' => "}",
+        '［' => "[",
+        '］' => "]",
+        '＝' => "=",
+        '＋' => "+",
+        '－' | '−' | '–' | '—' | '‐' | '‑' => "-",
+        '＊' => "*",
+        '／' => "/",
+        '＃' => "#",
+        '＠' => "@",
+        '\u{a0}' | '\u{2000}'..='\u{200a}' | '\u{202f}' | '\u{205f}' | '\u{3000}' => " ",
+        '\u{200b}'..='\u{200f}' | '\u{2060}' | '\u{feff}' | '\u{ad}' => "",
+        _ => return None,
+    })
+}
+
+fn is_quote(character: char) -> bool {
+    matches!(character, '“' | '”' | '„' | '‟' | '＂')
+}
+
+struct Reader<'t> {
+    source: SourceId,
+    text: &'t str,
+    /// By what they look like: the first, and where they stand.
+    found: BTreeMap<&'static str, (char, Vec<Span>)>,
+    /// The text as it is read, once that differs.
+    bytes: Option<Vec<u8>>,
+}
+
+impl Reader<'_> {
+    fn run(&mut self) {
+        // At the beginning of a file it tells the encoding.
+        let mut at = if self.text.starts_with('\u{feff}') { 3 } else { 0 };
+        while let Some(character) = self.text[at..].chars().next() {
+            let rest = &self.text[at..];
+            let next = at + character.len_utf8();
+            at = match character {
+                '"' => at + text_end(rest),
+                '/' if rest.starts_with("//") => at + rest.find('\n').unwrap_or(rest.len()),
+                '/' if rest.starts_with("/*") => at + rest[2..].find("*/").map_or(rest.len(), |end| end + 4),
+                _ if is_quote(character) => self.quoted(at, character),
+                _ => {
+                    if let Some(means) = looks_like(character) {
+                        self.replace(at, character, means, false);
+                    }
+                    next
+                }
+            };
+        }
+    }
+
+    /// A text in curly quotes. Without its end on the line, they are left as they are.
+    fn quoted(&mut self, at: usize, opener: char) -> usize {
+        let inside = at + opener.len_utf8();
+        let end = self.text[inside..].find(|c| c == '"' || c == '\n' || is_quote(c));
+        let closer = end.and_then(|end| self.text[inside + end..].chars().next().map(|c| (inside + end, c)));
+        match closer {
+            Some((end, closer)) if closer != '\n' => {
+                self.replace(at, opener, "\"", true);
+                if closer != '"' {
+                    self.replace(end, closer, "\"", false);
+                }
+                end + closer.len_utf8()
+            }
+            _ => inside,
+        }
+    }
+
+    /// Puts what a character looks like in its place, at its end or at its beginning, beside blanks.
+    fn replace(&mut self, at: usize, character: char, means: &'static str, at_end: bool) {
+        let length = character.len_utf8();
+        let (_, places) = self.found.entry(means).or_insert((character, vec![]));
+        if places.len() < MAX_PLACES {
+            places.push(Span::new(self.source, at, at + length));
+        }
+        let bytes = self.bytes.get_or_insert_with(|| self.text.as_bytes().to_vec());
+        bytes[at..at + length].fill(b' ');
+        if let Some(sign) = means.bytes().next() {
+            bytes[if at_end { at + length - 1 } else { at }] = sign;
+        }
+    }
+}
+
+/// How long a text is, from its `"` to its other one or to the end of its line.
+fn text_end(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let mut at = 1;
+    loop {
+        match bytes.get(at) {
+            None => return bytes.len(),
+            Some(b'"') => return at + 1,
+            Some(b'\n') => return at,
+            Some(b'\\') if bytes.get(at + 1).is_some_and(|next| *next != b'\n') => at += 1,
+            Some(_) => {}
+        }
+        at += 1;
+        // An escaped character may be several bytes long.
+        while at < bytes.len() && !text.is_char_boundary(at) {
+            at += 1;
+        }
+    }
+}
