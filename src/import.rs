@@ -4,8 +4,8 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::files::{FileError, FilePath, Files};
 use crate::source::{Source, Sources};
 use crate::span::{SourceId, Span};
-use crate::syntax::ast::{self, Entry, Name, StatementKind};
 use crate::syntax;
+use crate::syntax::ast::{self, Entry, Name, StatementKind};
 use std::collections::BTreeMap;
 
 /// So many times the longest source is the most that all imported files have together.
@@ -33,7 +33,13 @@ pub struct ImportedFile {
 }
 
 /// Parses a source, and reads and parses what it imports, at most so many levels deep.
-pub fn import(files: &dyn Files, sources: &mut Sources, main: SourceId, levels: usize, limits: syntax::Limits) -> Imported {
+pub fn import(
+    files: &dyn Files,
+    sources: &mut Sources,
+    main: SourceId,
+    levels: usize,
+    limits: syntax::Limits,
+) -> Imported {
     let path = sources.get(main).path.clone();
     let mut importer = Importer {
         files,

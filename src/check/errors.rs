@@ -44,7 +44,9 @@ pub(super) fn closest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str>
         })
         .filter(|(distance, ..)| *distance <= limit)
         // Of two that are as far, the one with all the letters that were written is the likelier.
-        .min_by_key(|(distance, other_start, candidate)| (*distance, *other_start, !is_within(&lower, candidate)))
+        .min_by_key(|(distance, other_start, candidate)| {
+            (*distance, *other_start, !is_within(&lower, candidate))
+        })
         .map(|(.., candidate)| candidate)
 }
 
@@ -83,9 +85,7 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
             with_familiar(diagnostic, here, name.span, candidates)
         }
         None if what == "kind" => diagnostic.help(format!("the kinds known here are {}", quoted(candidates))),
-        None if what == "function" => {
-            diagnostic.help(format!("the functions are {}", quoted(candidates)))
-        }
+        None if what == "function" => diagnostic.help(format!("the functions are {}", quoted(candidates))),
         None if what == "name" => diagnostic.help(format!("declare it: `let {} = …`", name.text)),
         None => diagnostic,
     }

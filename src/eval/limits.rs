@@ -22,7 +22,13 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Limits {
-        Limits { things: 10_000_000, levels: 64, items: 1_000_000, steps: 1_000_000_000, text: syntax::Limits::default() }
+        Limits {
+            things: 10_000_000,
+            levels: 64,
+            items: 1_000_000,
+            steps: 1_000_000_000,
+            text: syntax::Limits::default(),
+        }
     }
 }
 

@@ -28,6 +28,8 @@ pub(super) fn look(lint: &mut Lint) {
     let mut found = curved(&lint.scene.primitives);
     found.extend(flat(lint));
     found.sort_unstable();
+    // Boxes may share several faces.
+    found.dedup();
     // A pair of places in the source is named once, however many pairs of surfaces it makes.
     let mut pairs: BTreeMap<[Option<Span>; 2], ([OriginId; 2], usize)> = BTreeMap::new();
     for (later, earlier) in found {

@@ -211,9 +211,10 @@ pub fn kind(name: &str) -> Option<Familiar> {
         "settings" | "image" | "film" | "output" | "global_settings" => {
             rewritten("render", "how the picture is made stands in `render`: `render { size: (1280, 720) }`")
         }
-        "texture" | "pigment" | "finish" | "interior" => {
-            rewritten("diffuse", "what a shape is made of is a material: `material: diffuse { color: #d94f30 }`")
-        }
+        "texture" | "pigment" | "finish" | "interior" => rewritten(
+            "diffuse",
+            "what a shape is made of is a material: `material: diffuse { color: #d94f30 }`",
+        ),
         "triangle" | "polygon" | "smooth_triangle" | "quad" | "mesh2" => {
             rewritten("mesh", "triangles come from a file: `mesh { file: \"shape.obj\" }`")
         }

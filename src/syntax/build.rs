@@ -66,7 +66,7 @@ pub(super) struct Builder<'t> {
     deep: Cell<bool>,
     /// Where the body that is being read has a value in angle brackets in place of a field.
     foreign: Cell<Option<Span>>,
-    /// Whether the last `if` had no braces, as its `else` then has none either.
+    /// Whether a body without braces was complained of; once an item is enough, as its `else` then has none either.
     pub(super) unbraced: Cell<bool>,
 }
 
@@ -86,6 +86,11 @@ impl<'t> Builder<'t> {
 
     pub(super) fn report(&self, diagnostic: crate::diagnostic::Diagnostic) {
         self.sink.borrow_mut().push(diagnostic);
+    }
+
+    /// How much was reported.
+    pub(super) fn reported(&self) -> usize {
+        self.sink.borrow().len()
     }
 
     // --- Places ---------------------------------------------------------------------------------------------

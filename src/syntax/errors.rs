@@ -46,7 +46,8 @@ impl Sink {
     pub(super) fn label(&mut self, within: Span, place: Span, text: &str) -> bool {
         let found = self.0.iter_mut().find(|diagnostic| within.contains(diagnostic.primary.span));
         let Some(diagnostic) = found else { return false };
-        *diagnostic = std::mem::replace(diagnostic, Diagnostic::new(Code::E0001, "", place)).label(place, text);
+        *diagnostic =
+            std::mem::replace(diagnostic, Diagnostic::new(Code::E0001, "", place)).label(place, text);
         true
     }
 

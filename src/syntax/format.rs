@@ -67,7 +67,8 @@ fn broken(file: &File, text: &str, slips: &[Diagnostic]) -> Vec<Range<usize>> {
         .collect();
     let mut ranges: Vec<Range<usize>> = vec![];
     // What a mend would change is part of the slip.
-    let edits = |slip: &Diagnostic| slip.fix.iter().flat_map(|fix| &fix.edits).map(|(span, _)| *span).collect();
+    let edits =
+        |slip: &Diagnostic| slip.fix.iter().flat_map(|fix| &fix.edits).map(|(span, _)| *span).collect();
     let mut places: Vec<Range<usize>> = slips
         .iter()
         .flat_map(|slip| {

@@ -1,13 +1,13 @@
 //! Characters that look like those of the language: full-width signs, curly quotes, the spaces and dashes of
-//! typesetting. A text that was copied from a page has them. Each sign is reported once, with all its places, and
-//! read as what it looks like.
+//! typesetting. A text that was copied from a page has them. They are reported together, and each is read as what it
+//! looks like.
 
 use super::errors::{self, Sink};
 use crate::span::{SourceId, Span};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-/// So many places of one sign are mended at once.
+/// So many places are mended at once.
 const MAX_PLACES: usize = 10_000;
 
 /// The text with each such character in place of what it looks like, as long as it was.
@@ -17,11 +17,8 @@ pub(super) fn read<'t>(source: SourceId, text: &'t str, sink: &mut Sink) -> Cow<
     }
     let mut reader = Reader { source, text, found: BTreeMap::new(), bytes: None };
     reader.run();
-    for (means, (first, places)) in &reader.found {
-        if let Some(mut diagnostic) = errors::lookalike(*first, means, places) {
-            for place in places {
-                diagnostic = diagnostic.fix(*place, *means);
-            }
+    for (first, places) in reader.found.values() {
+        if let Some(diagnostic) = errors::lookalike(*first, places) {
             sink.push(diagnostic);
         }
     }
@@ -60,11 +57,19 @@ fn is_quote(character: char) -> bool {
     matches!(character, '“' | '”' | '„' | '‟' | '＂')
 }
 
+/// What is reported together.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Group {
+    Sign,
+    Space,
+    Invisible,
+}
+
 struct Reader<'t> {
     source: SourceId,
     text: &'t str,
-    /// By what they look like: the first, and where they stand.
-    found: BTreeMap<&'static str, (char, Vec<Span>)>,
+    /// Signs, spaces and what is invisible: the first of each, and where they stand for what.
+    found: BTreeMap<Group, (char, Vec<(Span, &'static str)>)>,
     /// The text as it is read, once that differs.
     bytes: Option<Vec<u8>>,
 }
@@ -111,9 +116,14 @@ impl Reader<'_> {
     /// Puts what a character looks like in its place, at its end or at its beginning, beside blanks.
     fn replace(&mut self, at: usize, character: char, means: &'static str, at_end: bool) {
         let length = character.len_utf8();
-        let (_, places) = self.found.entry(means).or_insert((character, vec![]));
+        let group = match means {
+            "" => Group::Invisible,
+            " " => Group::Space,
+            _ => Group::Sign,
+        };
+        let (_, places) = self.found.entry(group).or_insert((character, vec![]));
         if places.len() < MAX_PLACES {
-            places.push(Span::new(self.source, at, at + length));
+            places.push((Span::new(self.source, at, at + length), means));
         }
         let bytes = self.bytes.get_or_insert_with(|| self.text.as_bytes().to_vec());
         bytes[at..at + length].fill(b' ');

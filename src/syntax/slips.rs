@@ -190,7 +190,8 @@ impl<'t> Builder<'t> {
     fn otherwise_written(&self, word: &Name, value: &Node, place: Span) -> Option<Option<Name>> {
         let diagnostic = errors::habit(&word.text, word.span)?;
         self.report(diagnostic);
-        let text = value.as_str().trim_end();
+        let text = errors::first_token(value.as_str());
+        let place = Span { end: place.start + text.len() as u32, ..place };
         Some(is_word(text).then(|| Name { text: text.into(), span: place }))
     }
 
@@ -203,9 +204,7 @@ impl<'t> Builder<'t> {
                 errors::missing_name(keyword, name.span)
             }
             word if is_reserved(word) && word != "material" => statements::begins_nothing(word, name.span),
-            word if top && errors::changes(self.after(word_end)) => {
-                errors::changed(word, name.span)
-            }
+            word if top && errors::changes(self.after(word_end)) => errors::changed(word, name.span),
             word if top => errors::missing_body(word, name.span),
             word => errors::lone_name(word, name.span),
         });

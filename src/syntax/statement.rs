@@ -182,14 +182,15 @@ fn function<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Span) -> De
     let mut place = name.span;
     let mut parameters = vec![];
     // One complaint about the head is enough.
-    let mut complete = true;
+    let mut complete = false;
     match parts.next_if(|part| part.as_rule() == Rule::parameters) {
         Some(pair) => {
             place = builder.trimmed(&pair);
+            let known = builder.reported();
             parameters = self::parameters(builder, pair);
+            complete = builder.reported() == known;
         }
         None => {
-            complete = false;
             builder.report(slips::missing_parameters(place.after()));
         }
     }
@@ -326,13 +327,13 @@ fn block<'t>(
     span: Span,
 ) -> Deep<Body> {
     let known = !matches!(head.kind, ExprKind::Invalid);
-    builder.unbraced.set(false);
     if let Some(before) = parts.next_if(|part| part.as_rule() == Rule::before_body) {
         let text = before.as_str().trim_ascii();
         if text.len() > 1 && text.starts_with(':') {
             // The braces that follow are those of something within.
             drop(parts.next());
-            return unbraced(builder, word, &before, span);
+            let start = before.as_span().start();
+            return unbraced(builder, word, builder.at(start, start + 1), span);
         }
         if known {
             builder.unexpected(&before, slips::before_block);
@@ -341,10 +342,7 @@ fn block<'t>(
     let colon = builder.after((head.span.range().end).saturating_sub(builder.base())).trim_ascii_start();
     if parts.peek().is_none() && colon.starts_with(':') && known {
         let start = builder.base() + builder.text_len() - colon.len();
-        let place = Span::new(span.source, start, start + 1);
-        builder.report(errors::unbraced(word, place));
-        builder.unbraced.set(true);
-        return (empty(span.after()), 0);
+        return unbraced(builder, word, Span::new(span.source, start, start + 1), span);
     }
     match parts.next_if(|part| part.as_rule() == Rule::body) {
         Some(body) => builder.body(body),
@@ -358,11 +356,11 @@ fn block<'t>(
     }
 }
 
-/// A body without braces, as in Python, that holds something with braces.
-fn unbraced(builder: &Builder, word: &str, before: &Node, span: Span) -> Deep<Body> {
-    let start = before.as_span().start();
-    builder.report(errors::unbraced(word, builder.at(start, start + 1)));
-    builder.unbraced.set(true);
+/// A body without braces, as in Python. What belongs to it is not known, nor to its `else`: that is one slip.
+fn unbraced(builder: &Builder, word: &str, colon: Span, span: Span) -> Deep<Body> {
+    if !builder.unbraced.replace(true) {
+        builder.report(errors::unbraced(word, colon));
+    }
     (empty(span.after()), 0)
 }
 
@@ -405,7 +403,9 @@ fn otherwise<'t>(builder: &Builder<'t>, pair: Node<'t>) -> Deep<Body> {
             chained(builder, kind, depth, span)
         }
         None => {
-            builder.report(slips::missing_else_block(place));
+            if !builder.unbraced.get() {
+                builder.report(slips::missing_else_block(place));
+            }
             (empty(place.after()), 0)
         }
     }

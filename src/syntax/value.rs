@@ -111,7 +111,8 @@ fn infix(builder: &Builder, left: Deep<Expr>, operator: &Node, right: Deep<Expr>
     let at = builder.span(operator);
     let span = left.span.to(right.span);
     let rule = operator.as_rule();
-    if matches!(rule, Rule::foreign_power | Rule::foreign_product) && !matches!(operator.as_str(), "×" | "÷") {
+    if matches!(rule, Rule::foreign_power | Rule::foreign_product) && !matches!(operator.as_str(), "×" | "÷")
+    {
         let function = if rule == Rule::foreign_power { "pow" } else { "mod" };
         let sign = operator.as_str();
         builder.report(errors::operator_for_function(sign, function, at, left.span, right.span));

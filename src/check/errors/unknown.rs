@@ -18,6 +18,8 @@ pub(in crate::check) fn unknown_value(
     let diagnostic =
         Diagnostic::new(Code::E0101, format!("unknown name `{text}`"), name.span).at("not known here");
     match wanted {
+        // It is a kind, which makes what is wanted.
+        _ if schema::kind(text).is_some() => unknown_name(name, candidates),
         FieldType::Text if guess.is_none() && setting => {
             diagnostic.help(format!("a text has quotes of its own: `--set 'NAME=\"{text}\"'`"))
         }

@@ -18,8 +18,8 @@ const WORDS: &[(&[&str], &str)] = &[
     ),
     (
         &[
-            "var", "const", "local", "global", "static", "auto", "declare", "float", "double", "int", "string",
-            "color", "vec3", "set",
+            "var", "const", "local", "global", "static", "auto", "declare", "float", "double", "int",
+            "string", "color", "vec3", "set",
         ],
         "a value is named by `let name = …`",
     ),
@@ -162,29 +162,31 @@ pub(in crate::syntax) fn directive(word: &str, span: Span) -> Diagnostic {
     diagnostic.help(known.map_or("a comment begins with `//`", |(_, way)| *way))
 }
 
-/// Characters that look like one of the language: the first of them, what they look like, and all their places.
-pub(in crate::syntax) fn lookalike(found: char, means: &str, places: &[Span]) -> Option<Diagnostic> {
-    let first = *places.first()?;
-    let name = match means {
-        "" => format!("the invisible character U+{:04X}", u32::from(found)),
-        " " => format!("the special space U+{:04X}", u32::from(found)),
-        _ => shown(&found.to_string()),
+/// Characters that look like those of the language: the first of them, and where they stand for what.
+pub(in crate::syntax) fn lookalike(found: char, places: &[(Span, &'static str)]) -> Option<Diagnostic> {
+    let (first, means) = *places.first()?;
+    let code = u32::from(found);
+    let (message, looks, write) = match means {
+        "" => (
+            format!("unexpected invisible character U+{code:04X}"),
+            "means nothing".into(),
+            "delete it".into(),
+        ),
+        " " => {
+            let message = format!("unexpected special space U+{code:04X}");
+            (message, "looks like a space".into(), "write a plain space".into())
+        }
+        _ => {
+            let message = format!("unexpected {}", shown(&found.to_string()));
+            (message, format!("looks like `{means}`"), format!("write `{means}`"))
+        }
     };
-    let write = match means {
-        "" => "delete it".to_string(),
-        " " => "write a plain space".to_string(),
-        _ => format!("write `{means}`"),
+    let others = match (places.len() - 1, means) {
+        (0, _) => String::new(),
+        (n, "") => format!(", and {n} more like it"),
+        (n, " ") => format!(", and for {n} more like it"),
+        (n, _) => format!("; {n} more only look like a sign of the language"),
     };
-    let help = match places.len() {
-        1 => write,
-        2 => format!("{write}, here and in 1 more place"),
-        n => format!("{write}, here and in {} more places", n - 1),
-    };
-    let looks = match means {
-        "" => "means nothing".to_string(),
-        " " => "looks like a space".to_string(),
-        _ => format!("looks like `{means}`"),
-    };
-    let diagnostic = Diagnostic::new(Code::E0001, format!("unexpected {name}"), first).at(looks).help(help);
-    Some(diagnostic)
+    let diagnostic = Diagnostic::new(Code::E0001, message, first).at(looks).help(write + &others);
+    Some(places.iter().fold(diagnostic, |diagnostic, (place, means)| diagnostic.fix(*place, *means)))
 }
