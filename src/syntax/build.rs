@@ -96,7 +96,10 @@ impl<'t> Builder<'t> {
     // --- Places ---------------------------------------------------------------------------------------------
 
     pub(super) fn whole(&self) -> Span {
-        self.at(0, self.text.len())
+        // An item that was not parsed may end within a character that was read as another.
+        let text = self.source.text;
+        let (start, end) = (self.base, self.base + self.text.len());
+        Span::new(self.source.id, text.floor_char_boundary(start), text.ceil_char_boundary(end))
     }
 
     /// The span of a range of the item.
@@ -213,7 +216,7 @@ impl<'t> Builder<'t> {
                 Rule::semicolon => self.semicolon(&pair),
                 Rule::crowded if explained => muted = Some(self.sink.borrow().len()),
                 Rule::crowded => self.crowded(&pair),
-                Rule::extra | Rule::decimal if explained || explained_value => {}
+                Rule::extra | Rule::decimal if explained || explained_value || self.unbraced.get() => {}
                 Rule::decimal => {
                     if self.decimal(&pair) {
                         entries.last_mut().into_iter().for_each(spoil);

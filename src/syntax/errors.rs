@@ -51,6 +51,11 @@ impl Sink {
         true
     }
 
+    /// Moves all that the diagnostics point at.
+    pub(super) fn move_places(&mut self, moved: impl Fn(Span) -> Span) {
+        self.0.iter_mut().for_each(|diagnostic| diagnostic.move_places(&moved));
+    }
+
     /// What was collected, in the order of the text.
     pub(super) fn into_sorted(mut self) -> Vec<Diagnostic> {
         self.0.sort_by_key(|diagnostic| (diagnostic.primary.span.start, diagnostic.code));
@@ -168,7 +173,8 @@ pub(super) fn stray_separator(span: Span, separator: &str) -> Diagnostic {
 
 /// A byte of the text that only programs write.
 pub(super) fn control(span: Span) -> Diagnostic {
-    unexpected("\u{1}", span).at("invisible").help("delete it").fix(span, "")
+    // What it stands in place of is not known.
+    unexpected("\u{1}", span).at("invisible").help("delete it")
 }
 
 /// What a word of the language does, for whoever meant it as a name.

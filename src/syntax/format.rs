@@ -60,10 +60,12 @@ fn broken(file: &File, text: &str, slips: &[Diagnostic]) -> Vec<Range<usize>> {
         return vec![];
     }
     let written = lookalikes::read(file.source, text, &mut Sink::new());
-    let items: Vec<Range<usize>> = cut::cut(file.source, &written, Limits::default().depth)
+    let items: Vec<Range<usize>> = cut::cut(file.source, &written.text, Limits::default().depth)
         .items
         .iter()
-        .map(|item| item.start..item.start + item.text.len())
+        .map(|item| {
+            text.floor_char_boundary(item.start)..text.ceil_char_boundary(item.start + item.text.len())
+        })
         .collect();
     let mut ranges: Vec<Range<usize>> = vec![];
     // What a mend would change is part of the slip.

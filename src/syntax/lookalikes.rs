@@ -1,7 +1,8 @@
 //! Characters that look like those of the language: full-width signs, curly quotes, the spaces and dashes of
-//! typesetting. A text that was copied from a page has them. They are reported together, and each is read as what it
-//! looks like.
+//! typesetting. A text that was copied from a page has them. They are reported together, and
+//! each is read as what it looks like as far as that shows where things end.
 
+use super::cut::Cut;
 use super::errors::{self, Sink};
 use crate::span::{SourceId, Span};
 use std::borrow::Cow;
@@ -10,22 +11,53 @@ use std::collections::BTreeMap;
 /// So many places are mended at once.
 const MAX_PLACES: usize = 10_000;
 
-/// The text with each such character in place of what it looks like, as long as it was.
-pub(super) fn read<'t>(source: SourceId, text: &'t str, sink: &mut Sink) -> Cow<'t, str> {
-    if text.is_ascii() {
-        return Cow::Borrowed(text);
+/// A text as it is read.
+pub(super) struct Read<'t> {
+    /// With each such character in place of what it looks like, as long as it was.
+    pub(super) text: Cow<'t, str>,
+    /// Where they stand, in order.
+    places: Vec<Span>,
+}
+
+impl Read<'_> {
+    /// Items with such characters are not parsed: they are cut where they were meant to end, and no more is said of
+    /// them.
+    pub(super) fn skip(&self, cut: &mut Cut) {
+        let mut places = self.places.iter().peekable();
+        for item in &mut cut.items {
+            let end = (item.start + item.text.len()) as u32;
+            while places.next_if(|place| place.end <= item.start as u32).is_some() {}
+            item.skipped |= places.peek().is_some_and(|place| place.start < end);
+        }
     }
-    let mut reader = Reader { source, text, found: BTreeMap::new(), bytes: None };
+
+    /// A place in whole characters of the text as it was written.
+    pub(super) fn whole(&self, place: Span, written: &str) -> Span {
+        if self.places.is_empty() {
+            return place;
+        }
+        let start = written.floor_char_boundary(place.start as usize) as u32;
+        Span { start, end: written.ceil_char_boundary(place.end as usize) as u32, ..place }
+    }
+}
+
+/// Reads a text, and reports such characters.
+pub(super) fn read<'t>(source: SourceId, text: &'t str, sink: &mut Sink) -> Read<'t> {
+    if text.is_ascii() {
+        return Read { text: Cow::Borrowed(text), places: vec![] };
+    }
+    let mut reader = Reader { source, text, found: BTreeMap::new(), places: vec![], bytes: None };
     reader.run();
     for (first, places) in reader.found.values() {
         if let Some(diagnostic) = errors::lookalike(*first, places) {
             sink.push(diagnostic);
         }
     }
-    match reader.bytes.map(String::from_utf8) {
+    let text = match reader.bytes.map(String::from_utf8) {
         Some(Ok(text)) => Cow::Owned(text),
         _ => Cow::Borrowed(text),
-    }
+    };
+    Read { text, places: reader.places }
 }
 
 /// What a character looks like; nothing where it is invisible.
@@ -70,6 +102,8 @@ struct Reader<'t> {
     text: &'t str,
     /// Signs, spaces and what is invisible: the first of each, and where they stand for what.
     found: BTreeMap<Group, (char, Vec<(Span, &'static str)>)>,
+    /// Where all of them stand, those that touch as one.
+    places: Vec<Span>,
     /// The text as it is read, once that differs.
     bytes: Option<Vec<u8>>,
 }
@@ -124,6 +158,11 @@ impl Reader<'_> {
         let (_, places) = self.found.entry(group).or_insert((character, vec![]));
         if places.len() < MAX_PLACES {
             places.push((Span::new(self.source, at, at + length), means));
+        }
+        let place = Span::new(self.source, at, at + length);
+        match self.places.last_mut().filter(|last| last.end >= place.start) {
+            Some(last) => *last = last.to(place),
+            None => self.places.push(place),
         }
         let bytes = self.bytes.get_or_insert_with(|| self.text.as_bytes().to_vec());
         bytes[at..at + length].fill(b' ');

@@ -78,8 +78,9 @@ pub fn parse_rows(source: SourceId, text: &str, limits: Limits) -> (ast::File, V
         return (file, vec![errors::long_source(span.after(), limits.source)]);
     }
     let mut sink = errors::Sink::new();
-    let text = &*lookalikes::read(source, text, &mut sink);
-    let cut = cut::cut(source, text, limits.depth);
+    let read = lookalikes::read(source, text, &mut sink);
+    let mut cut = cut::cut(source, &read.text, limits.depth);
+    read.skip(&mut cut);
     sink.append(cut.sink);
     let found = build::Source { id: source, text, comments: &cut.comments, depth: limits.depth };
     let mut entries = Vec::with_capacity(cut.items.len());
@@ -94,6 +95,7 @@ pub fn parse_rows(source: SourceId, text: &str, limits: Limits) -> (ast::File, V
         built.into_iter().for_each(collect);
     }
     strays(&entries, &cut.strays, &mut sink);
+    sink.move_places(|place| read.whole(place, text));
     let file = ast::File { source, body: ast::Body { entries, span }, comments: cut.comments };
     (file, sink.into_sorted())
 }
@@ -120,11 +122,14 @@ fn strays(entries: &[ast::Entry], strays: &[cut::Stray], sink: &mut errors::Sink
 pub fn parse_expression(source: SourceId, text: &str) -> (ast::Expr, Vec<Diagnostic>) {
     let Limits { source: longest, depth } = Limits::default();
     let mut sink = errors::Sink::new();
-    let text = &*lookalikes::read(source, &text[..text.floor_char_boundary(longest)], &mut sink);
-    let cut = cut::whole(source, text, depth);
+    let text = &text[..text.floor_char_boundary(longest)];
+    let read = lookalikes::read(source, text, &mut sink);
+    let mut cut = cut::whole(source, &read.text, depth);
+    read.skip(&mut cut);
     sink.append(cut.sink);
     let found = build::Source { id: source, text, comments: &cut.comments, depth };
     let (expr, slips) = items::value(found, cut.items.first());
     sink.append(slips);
+    sink.move_places(|place| read.whole(place, text));
     (expr, sink.into_sorted())
 }

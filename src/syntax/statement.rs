@@ -158,8 +158,8 @@ fn unquoted<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -
     }
     let named = parts.find(|part| part.as_rule() == Rule::word).map(|name| declared(builder, Some(name)));
     let name = named.or_else(|| {
-        let name = if path.ends_with(".rt") { stem(path)? } else { path };
-        Some(Name { text: SmolStr::new(name), span: place })
+        let word = path.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') && !is_reserved(path);
+        word.then(|| Name { text: SmolStr::new(path), span: place })
     });
     Entry::Broken(Broken { name, span })
 }
@@ -388,7 +388,9 @@ fn otherwise<'t>(builder: &Builder<'t>, pair: Node<'t>) -> Deep<Body> {
     let word = parts.next().expect("the other choice begins with a word");
     let place = builder.span(&word);
     if word.as_rule() == Rule::elif {
-        builder.report(slips::else_if(word.as_str(), place));
+        if !builder.unbraced.get() {
+            builder.report(slips::else_if(word.as_str(), place));
+        }
         let span = parts.clone().last().map_or(place, |last| place.to(builder.trimmed(&last)));
         let (kind, depth) = choice(builder, parts, span);
         return chained(builder, kind, depth, span);
