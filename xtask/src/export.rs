@@ -1,7 +1,7 @@
 //! Exports against the renderers that they are for: Mitsuba draws what it can, POV-Ray what comes straight from
 //! lights. Both make nearly the picture that we make.
 
-use super::{Outcome, Place, run};
+use super::{Outcome, Place, run, tools};
 use std::fs;
 use std::process::Command;
 
@@ -112,6 +112,7 @@ render { size: (160, 120), samples: 64, filter: box, indirect: false }
 
 /// Exports, renders and compares each scene.
 pub fn agreement(place: &Place) -> Outcome {
+    tools::program("povray", "povray")?;
     let python = mitsuba(place)?;
     let script = place.root.join("xtask/e2e/export.py");
     for file in FILES {

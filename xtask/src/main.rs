@@ -6,6 +6,7 @@
 mod export;
 mod readme;
 mod reference;
+mod tools;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -44,7 +45,8 @@ cargo xtask e2e [STEP…]
   export     exported scenes against Mitsuba (from PyPI) and POV-Ray (povray, of Debian)
   readme     every command of the README, in a fresh clone of HEAD
 
-Without STEP all are run. Needs python3, bash, git and, for full-disk, leave to mount a tmpfs.";
+Without STEP all are run. Needs python3, bash, git and, for full-disk, leave to mount a tmpfs. What else a step needs
+it installs, from Debian or PyPI, or says that it cannot.";
 
 /// Where things are.
 struct Place {
