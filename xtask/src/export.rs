@@ -112,8 +112,8 @@ render { size: (160, 120), samples: 64, filter: box, indirect: false }
 
 /// Exports, renders and compares each scene.
 pub fn agreement(place: &Place) -> Outcome {
-    tools::program("povray", "povray")?;
-    let python = mitsuba(place)?;
+    tools::povray()?;
+    let python = tools::mitsuba(&place.desk.with_file_name("mitsuba"))?;
     let script = place.root.join("xtask/e2e/export.py");
     for file in FILES {
         let from = place.root.join("tests/cases/pictures").join(file);
@@ -157,17 +157,4 @@ fn prepare(
         .arg("-o")
         .arg(scene.with_extension("pfm")))?;
     Ok(export)
-}
-
-/// A Python that has Mitsuba, in an environment beside the steps, made if need be.
-fn mitsuba(place: &Place) -> Result<std::path::PathBuf, String> {
-    let folder = place.desk.with_file_name("mitsuba");
-    let python = folder.join("bin/python");
-    let works =
-        || Command::new(&python).args(["-c", "import mitsuba, numpy"]).status().is_ok_and(|s| s.success());
-    if !works() {
-        run(Command::new("python3").args(["-m", "venv"]).arg(&folder))?;
-        run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "mitsuba==3.9.1", "numpy"]))?;
-    }
-    Ok(python)
 }

@@ -3,6 +3,7 @@
 //!
 //! Nothing is skipped quietly. A tool that is missing fails the step that needs it, with its name.
 
+mod compare;
 mod export;
 mod readme;
 mod reference;
@@ -35,6 +36,11 @@ cargo xtask gallery
 
   makes the pictures of docs/gallery anew, in about ten minutes on two cores
 
+cargo xtask compare [--rounds N] [SCENE…]
+
+  renders scenes in turns with Mitsuba and POV-Ray, on an idle machine, and prints what each took; all of them
+  take about an hour
+
 cargo xtask e2e [STEP…]
 
   terminal   progress on a pseudo-terminal, and Ctrl-C within 100 ms
@@ -63,6 +69,7 @@ fn main() -> ExitCode {
     let ended = match arguments.split_first() {
         Some((task, steps)) if task == "e2e" => e2e(steps),
         Some((task, [])) if task == "gallery" => gallery(),
+        Some((task, arguments)) if task == "compare" => compare::compare(arguments),
         _ => Err(USAGE.into()),
     };
     match ended {
