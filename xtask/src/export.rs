@@ -14,10 +14,11 @@ const MITSUBA: &[(&str, &str, &[&str])] = &[
     ("dusk", DUSK, &[]),
     ("knot", KNOT, &["--approximate"]),
     ("towers", TOWERS, &["--approximate", "--tessellate", "96"]),
+    ("painted", PAINTED, &["--approximate"]),
 ];
 
 /// Scenes for POV-Ray.
-const POV: &[(&str, &str)] = &[("direct", DIRECT), ("spot", SPOT)];
+const POV: &[(&str, &str)] = &[("direct", DIRECT), ("spot", SPOT), ("cells", CELLS)];
 
 const ROOM: &str = "\
 sphere { at: (0, -100, 0)m, radius: 100m, material: diffuse { color: rgb(0.5, 0.6, 0.7) } }
@@ -87,8 +88,19 @@ camera { from: (0, 2.5, 7)m, look: (0, 1.4, 0)m, exposure: 0 }
 render { size: (160, 120), samples: 256, filter: box }
 ";
 
+const PAINTED: &str = "\
+plane { material: diffuse { color: checker(rgb(0.7, 0.7, 0.7), rgb(0.2, 0.1, 0.1), 70cm) } }
+box { at: (-1.6, 0.6, 0)m, size: (1.2, 1.2, 1.2)m, place: turn(y: 30deg), material: diffuse { color: stripes(rgb(0.8, 0.2, 0.1), checker(rgb(0.9, 0.9, 0.9), rgb(0.1, 0.1, 0.1), 15cm), width: 30cm, along: (1, 1, 0)) } }
+box { at: (1.5, 0.75, 1)m, size: (1, 1.5, 0.2)m, place: turn(y: -30deg), material: diffuse { color: image(\"letter.png\", size: 40cm) } }
+sphere { at: (0, 0.7, 0)m, radius: 70cm, place: turn(y: 50deg) |> turn(x: 20deg), material: diffuse { color: image(\"letter.png\") } }
+light { at: (2, 5, 4)m, power: 500W }
+sky { radiance: 0.3W/m2 }
+camera { from: (0, 4, 7)m, look: (0, 0.4, 0)m, exposure: 0 }
+render { size: (160, 120), samples: 256, filter: box }
+";
+
 /// Files that the scenes name, among the cases of pictures.
-const FILES: &[&str] = &["dusk.hdr", "knot.ply"];
+const FILES: &[&str] = &["dusk.hdr", "knot.ply", "letter.png"];
 
 const DIRECT: &str = "\
 plane { material: diffuse { color: rgb(0.5, 0.6, 0.7) } }
@@ -107,6 +119,17 @@ plane { material: diffuse { color: rgb(0.5, 0.6, 0.7) } }
 box { at: (0, 0.51, 0)m, size: (1, 1, 1)m, place: turn(y: 30deg), material: diffuse { color: rgb(0.8, 0.3, 0.3) } }
 light { at: (2, 5, 4)m, power: 300W, aim: (0, 0, 0)m, cone: 40deg, soft: 50% }
 camera { from: (0, 3, 8)m, look: (0, 0.8, 0)m, width: 8m, exposure: 0 }
+render { size: (160, 120), samples: 64, filter: box, indirect: false }
+";
+
+const CELLS: &str = "\
+plane { material: diffuse { color: checker(rgb(0.7, 0.7, 0.7), rgb(0.2, 0.1, 0.1), 70cm) } }
+box { at: (-1.6, 0.61, 0)m, size: (1.2, 1.2, 1.2)m, place: turn(y: 30deg), material: diffuse { color: stripes(rgb(0.8, 0.2, 0.1), checker(rgb(0.9, 0.9, 0.9), rgb(0.1, 0.1, 0.1), 15cm), width: 30cm, along: (1, 1, 0)) } }
+sphere { at: (0, 0.8, 0)m, radius: 80cm, place: turn(z: 20deg), material: diffuse { color: checker(rgb(0.2, 0.3, 0.8), rgb(0.9, 0.9, 0.9), 40cm) } }
+cylinder { at: (1.8, 0.01, 0)m, radius: 60cm, height: 1m, material: diffuse { color: checker(rgb(0.2, 0.8, 0.3), stripes(rgb(0.9, 0.9, 0.9), rgb(0.5, 0.1, 0.1), width: 5cm, along: (0, 1, 0)), 25cm) } }
+box { at: (0, 0.31, 2)m, size: (0.6, 0.6, 0.6)m, material: mirror { color: stripes(rgb(0.9, 0.9, 0.9), rgb(0.3, 0.3, 0.3), width: 10cm, along: (0, 1, 0)) } }
+light { at: (2, 5, 4)m, power: 500W }
+camera { from: (0, 3, 8)m, look: (0, 0.6, 0.5)m, exposure: 0 }
 render { size: (160, 120), samples: 64, filter: box, indirect: false }
 ";
 
