@@ -10,7 +10,7 @@ use crate::schema::{self, Category, Field, FieldType, KindId, PLACED, Preset, Ru
 use crate::span::Span;
 use crate::syntax::ast::{self, Entry, ExprKind as Tree, Name, StatementKind as Statement};
 use crate::units;
-use std::sync::Arc;
+use std::rc::Rc;
 
 impl Checker<'_> {
     /// A thing, in the picture or not. What is missing is for whoever uses it to say.
@@ -54,7 +54,7 @@ impl Checker<'_> {
             }
         };
         make.fields.sort_by_key(|(place, _)| *place);
-        let written = Arc::new(Written {
+        let written = Rc::new(Written {
             name: name.map(|name| name.text.clone()),
             span: construct.span,
             fields: make.fields.iter().map(|(_, value)| value.span).collect(),

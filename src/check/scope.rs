@@ -84,6 +84,15 @@ impl<'t> Item<'t> {
         }
     }
 
+    /// Where it begins.
+    pub(super) fn start(&self) -> u32 {
+        match self {
+            Item::Statement(statement) => statement.span.start,
+            Item::Rows(rows) => rows.span().start,
+            Item::Broken(broken) => broken.span.start,
+        }
+    }
+
     /// Whether it puts something into the picture by itself.
     fn drawn(&self) -> bool {
         matches!(self, Item::Statement(ast::Statement { kind: Tree::Thing { .. }, .. }))

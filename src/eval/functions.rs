@@ -120,6 +120,7 @@ fn rand(numbers: impl Iterator<Item = f64>) -> f64 {
     (mix_bits(state) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
+#[inline]
 fn mix_bits(mut z: u64) -> u64 {
     z = z.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -5,6 +5,7 @@
 use super::cut::Cut;
 use super::errors::{self, Sink};
 use crate::span::{SourceId, Span};
+use crate::units;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
@@ -122,6 +123,7 @@ impl Reader<'_> {
                 _ if is_quote(character) => self.quoted(at, character),
                 _ => {
                     if let Some(means) = looks_like(character) {
+                        let means = if means == " " && self.parts_unit(at, next) { "" } else { means };
                         self.replace(at, character, means, false);
                     }
                     next
@@ -145,6 +147,14 @@ impl Reader<'_> {
             }
             _ => inside,
         }
+    }
+
+    /// Whether a space stands between a number and its unit, which touch.
+    fn parts_unit(&self, at: usize, next: usize) -> bool {
+        let number = self.text[..at].ends_with(|c: char| c.is_ascii_digit() || c == ')');
+        let rest = &self.text[next..];
+        let word = &rest[..rest.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(rest.len())];
+        number && (rest.starts_with('%') || units::is_unit(word) && word != "in")
     }
 
     /// Puts what a character looks like in its place, at its end or at its beginning, beside blanks.

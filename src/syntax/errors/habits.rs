@@ -185,7 +185,8 @@ pub(in crate::syntax) fn lookalike(found: char, places: &[(Span, &'static str)])
         (0, _) => String::new(),
         (n, "") => format!(", and {n} more like it"),
         (n, " ") => format!(", and for {n} more like it"),
-        (n, _) => format!("; {n} more only look like a sign of the language"),
+        (1, _) => "; another only looks like a sign of the language".into(),
+        (n, _) => format!("; {n} more only look like signs of the language"),
     };
     let diagnostic = Diagnostic::new(Code::E0001, message, first).at(looks).help(write + &others);
     Some(places.iter().fold(diagnostic, |diagnostic, (place, means)| diagnostic.fix(*place, *means)))
