@@ -90,6 +90,9 @@ fn is_quote(character: char) -> bool {
     matches!(character, '“' | '”' | '„' | '‟' | '＂')
 }
 
+/// Where one stands, and what it looks like.
+type Place = (Span, &'static str);
+
 /// What is reported together.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Group {
@@ -102,7 +105,7 @@ struct Reader<'t> {
     source: SourceId,
     text: &'t str,
     /// Signs, spaces and what is invisible: the first of each, and where they stand for what.
-    found: BTreeMap<Group, (char, Vec<(Span, &'static str)>)>,
+    found: BTreeMap<Group, (char, Vec<Place>)>,
     /// Where all of them stand, those that touch as one.
     places: Vec<Span>,
     /// The text as it is read, once that differs.
