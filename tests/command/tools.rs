@@ -197,7 +197,7 @@ fn info_tells_what_is_in_a_scene() {
     desk.run("check set.rt --max-brackets 1").expect(1, &["E0406", "more than 1 deep"]);
     desk.run("check set.rt --max-brackets 4096 --max-source 4095").expect(0, &[]);
     desk.run("check set.rt --max-brackets 5000").expect(2, &["4096"]);
-    desk.put("long.rt", &format!("// {}\nsphere {{ radius: 1m }}\n", "x".repeat(1 << 20)));
+    desk.put("long.rt", format!("// {}\nsphere {{ radius: 1m }}\n", "x".repeat(1 << 20)));
     desk.run("check long.rt").expect(0, &[]);
     desk.run("check long.rt --max-source 1").expect(1, &["E0406", "1 MiB"]);
     desk.put("bad.rt", "sphere {}\n");
