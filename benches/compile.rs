@@ -1,8 +1,13 @@
-//! How fast text becomes a scene, all stages together: `cargo bench --bench compile`.
+//! How fast text becomes a scene, all stages together and each by itself: `cargo bench --bench compile`.
 
 use divan::Bencher;
 use divan::counter::{BytesCount, ItemsCount};
+use rt_lang::check::{Program, check};
+use rt_lang::eval::{Limits, Thing, Things, eval};
 use rt_lang::files::{FileError, FilePath, Files};
+use rt_lang::import::import;
+use rt_lang::lint::lint;
+use rt_lang::lower::{Lowered, Meshes, Overrides, lower, measure};
 use rt_lang::source::{Source, Sources};
 use rt_lang::{Options, compile};
 use std::fmt::Write;
@@ -83,4 +88,75 @@ fn table_drawn(bencher: Bencher) {
     let files = points();
     let text = "for p in table(\"points.csv\") { sphere { at: (p.x, p.y, p.z), radius: 1mm } }";
     bencher.counter(ItemsCount::new(THINGS)).bench(|| compiled(&files, text));
+}
+
+/// A loop in a loop, which makes as many things as its square root says.
+fn nested(root: usize) -> String {
+    format!(
+        "for i in range({root}) {{ for j in range({root}) {{
+           sphere {{ at: (i * 1mm, rand(i, j) * 1m, j * 1m), radius: 0.3mm }}
+         }} }}"
+    )
+}
+
+/// What the stages before evaluation give.
+struct Checked {
+    files: OneFile,
+    sources: Sources,
+    program: Program,
+}
+
+impl Checked {
+    fn new(text: &str) -> Checked {
+        let files = OneFile([].into());
+        let mut sources = Sources::default();
+        let main = sources.add(Source::new("bench.rt", text));
+        let imported = import(&files, &mut sources, main, Limits::default().levels, Limits::default().text);
+        let (program, diagnostics) = check(&files, &sources, &imported, &[]);
+        assert_eq!(diagnostics, []);
+        Checked { files, sources, program }
+    }
+
+    fn meshes(&self) -> Meshes<'_> {
+        Meshes::new(&self.files, &self.sources)
+    }
+
+    fn things(&self, meshes: &Meshes) -> Things {
+        let measure = |things: &Things, thing: &Thing| measure(things, thing, meshes);
+        eval(&self.program, Limits::default(), &measure).0
+    }
+
+    fn lowered(&self, things: &Things, meshes: &Meshes) -> Lowered {
+        lower(things, &Overrides::default(), &self.files, &self.sources, meshes)
+    }
+}
+
+/// Square roots of how many things there are where a stage is timed by itself.
+const ROOTS: [usize; 2] = [316, 1000];
+
+#[divan::bench(sample_count = 5, args = ROOTS)]
+fn stage_eval(bencher: Bencher, root: usize) {
+    let checked = Checked::new(&nested(root));
+    let meshes = checked.meshes();
+    bencher.counter(ItemsCount::new(root * root)).bench_local(|| checked.things(&meshes));
+}
+
+#[divan::bench(sample_count = 5, args = ROOTS)]
+fn stage_lower(bencher: Bencher, root: usize) {
+    let checked = Checked::new(&nested(root));
+    let meshes = checked.meshes();
+    let things = checked.things(&meshes);
+    bencher.counter(ItemsCount::new(root * root)).bench_local(|| checked.lowered(&things, &meshes));
+}
+
+#[divan::bench(sample_count = 5, args = ROOTS)]
+fn stage_lint(bencher: Bencher, root: usize) {
+    let checked = Checked::new(&nested(root));
+    let meshes = checked.meshes();
+    let things = checked.things(&meshes);
+    let lowered = checked.lowered(&things, &meshes);
+    let scene = lowered.scene.expect("the scene is sound");
+    bencher
+        .counter(ItemsCount::new(root * root))
+        .bench_local(|| lint(&scene, &things.origins, &lowered.marks));
 }

@@ -41,7 +41,7 @@ pub fn compile(text: &str) {
     let mut sources = Sources::default();
     let id = sources.add(Source::new("fuzz.rt", text));
     // Within what a fuzzer can wait for.
-    let limits = Limits { things: 10_000, levels: 16, items: 10_000, steps: 100_000 };
+    let limits = Limits { things: 10_000, levels: 16, items: 10_000, steps: 100_000, ..Limits::default() };
     let options = Options { limits, ..Options::default() };
     let compiled = compile_scene(&NoFiles, &mut sources, id, &options);
     assert!(compiled.scene.is_some() || !compiled.diagnostics.is_empty());

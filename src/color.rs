@@ -1,5 +1,9 @@
 //! Colours: linear, with the primaries and white point of sRGB (ITU-R BT.709, D65).
 
+mod css;
+
+pub use css::css;
+
 use crate::math::{DVec3, exp, exp_m1, pow};
 
 /// Linear red, green and blue.

@@ -4,12 +4,12 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::files::{FileError, FilePath, Files};
 use crate::source::{Source, Sources};
 use crate::span::{SourceId, Span};
+use crate::syntax;
 use crate::syntax::ast::{self, Entry, Name, StatementKind};
-use crate::syntax::{self, MAX_SOURCE};
 use std::collections::BTreeMap;
 
-/// The most bytes that all imported files have together.
-const MAX_IMPORTED: usize = 4 * MAX_SOURCE;
+/// So many times the longest source is the most that all imported files have together.
+const MAX_IMPORTED: usize = 4;
 
 /// The files of a scene, each behind those it imports: the last is the one that was named.
 #[derive(Debug, Default)]
@@ -33,12 +33,19 @@ pub struct ImportedFile {
 }
 
 /// Parses a source, and reads and parses what it imports, at most so many levels deep.
-pub fn import(files: &dyn Files, sources: &mut Sources, main: SourceId, levels: usize) -> Imported {
+pub fn import(
+    files: &dyn Files,
+    sources: &mut Sources,
+    main: SourceId,
+    levels: usize,
+    limits: syntax::Limits,
+) -> Imported {
     let path = sources.get(main).path.clone();
     let mut importer = Importer {
         files,
         sources,
         levels,
+        limits,
         known: BTreeMap::new(),
         open: vec![],
         bytes: 0,
@@ -53,6 +60,7 @@ struct Importer<'a> {
     sources: &'a mut Sources,
     /// The most files that may be open at once.
     levels: usize,
+    limits: syntax::Limits,
     /// Files that were looked at; none where one cannot be used.
     known: BTreeMap<FilePath, Option<usize>>,
     /// The files that are being read, outermost first.
@@ -63,7 +71,7 @@ struct Importer<'a> {
 
 impl Importer<'_> {
     fn file(&mut self, source: SourceId, path: FilePath) -> usize {
-        let (tree, found) = syntax::parse_rows(source, &self.sources.get(source).text);
+        let (tree, found) = syntax::parse_rows(source, &self.sources.get(source).text, self.limits);
         self.out.diagnostics.extend(found);
         self.open.push(path.clone());
         let mut imports = BTreeMap::new();
@@ -101,13 +109,14 @@ impl Importer<'_> {
     }
 
     fn read(&mut self, path: &FilePath, written: &Name) -> Option<usize> {
-        let bytes = match self.files.read(path, MAX_SOURCE) {
+        let most = self.limits.source;
+        let bytes = match self.files.read(path, most) {
             Ok(bytes) => bytes,
             Err(error) => return self.report(error.diagnostic(&written.text, written.span)),
         };
         self.bytes += bytes.len();
-        if bytes.len() > MAX_SOURCE || self.bytes > MAX_IMPORTED {
-            return self.report(FileError::TooLarge(MAX_SOURCE).diagnostic(&written.text, written.span));
+        if bytes.len() > most || self.bytes > MAX_IMPORTED.saturating_mul(most) {
+            return self.report(FileError::TooLarge(most).diagnostic(&written.text, written.span));
         }
         let Ok(text) = std::str::from_utf8(&bytes) else { return self.report(errors::not_text(written)) };
         let source = self.sources.add(Source::new(self.files.name(path), text).at(path.clone()));

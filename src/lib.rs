@@ -99,7 +99,7 @@ pub struct Options {
     pub overrides: Overrides,
     /// Values for params of the file, each as `name=value`.
     pub set: Vec<String>,
-    /// What evaluating may take.
+    /// What reading and evaluating may take.
     pub limits: Limits,
 }
 
@@ -110,7 +110,7 @@ const STACK: usize = 256 << 20;
 /// errors, so that one run reports all that is wrong. `files` is what the source may read; what it imports is added
 /// to `sources`, and so is each setting.
 pub fn compile(files: &dyn Files, sources: &mut Sources, main: SourceId, options: &Options) -> Compiled {
-    let imported = import::import(files, sources, main, options.limits.levels);
+    let imported = import::import(files, sources, main, options.limits.levels, options.limits.text);
     let (settings, slips) = check::settings(sources, &options.set);
     let sources = &*sources;
     let work = move || stages(files, sources, main, imported, settings, slips, options);

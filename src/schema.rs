@@ -36,6 +36,7 @@ pub struct KindId(pub u8);
 
 impl KindId {
     /// The kind itself.
+    #[inline]
     pub fn get(self) -> &'static Kind {
         &KINDS[self.0 as usize]
     }
@@ -51,6 +52,7 @@ impl KindId {
     }
 
     /// The field at an index of [`KindId::fields`].
+    #[inline]
     pub fn field(self, index: usize) -> &'static Field {
         let own = self.get().fields;
         own.get(index).unwrap_or_else(|| &self.common()[index - own.len()])

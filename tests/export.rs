@@ -10,23 +10,25 @@ use std::path::Path;
 
 #[test]
 fn exports_are_as_they_were() {
-    let scene = small();
     insta::with_settings!({
         prepend_module_to_snapshot => false, omit_expression => true, snapshot_path => "cases/export"
     }, {
-        for (name, renderer) in RENDERERS {
-            let options = Options { stem: "small".into(), approximate: true, tessellate: Some(3) };
-            let exported = export(&scene, renderer, options).unwrap();
-            let notes: String = exported.notes.iter().map(|note| format!("note: {note}\n")).collect();
-            let files: String = exported.files.iter().map(|(name, bytes)| format!("{name}:\n{}", String::from_utf8_lossy(bytes))).collect();
-            insta::assert_snapshot!(name, exported.text + &notes + &files);
+        for (stem, prefix) in [("small", ""), ("painted", "painted-")] {
+            let scene = case(stem);
+            for (name, renderer) in RENDERERS {
+                let options = Options { stem: stem.into(), approximate: true, tessellate: Some(3) };
+                let exported = export(&scene, renderer, options).unwrap();
+                let notes: String = exported.notes.iter().map(|note| format!("note: {note}\n")).collect();
+                let files: String = exported.files.iter().map(|(name, bytes)| format!("{name}:\n{}", String::from_utf8_lossy(bytes))).collect();
+                insta::assert_snapshot!(format!("{prefix}{name}"), exported.text + &notes + &files);
+            }
         }
     });
 }
 
 #[test]
 fn nothing_is_left_out_quietly() {
-    let scene = small();
+    let scene = case("small");
     for (name, renderer) in RENDERERS {
         let unsaid = export(&scene, renderer, Options::default()).unwrap_err();
         assert!(unsaid.len() >= 2, "{name}: {unsaid:#?}");
@@ -37,9 +39,9 @@ fn nothing_is_left_out_quietly() {
 const RENDERERS: [(&str, Renderer); 3] =
     [("mitsuba", Renderer::Mitsuba), ("pbrt", Renderer::Pbrt), ("pov", Renderer::Pov)];
 
-fn small() -> Scene {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases/export/small.rt");
+fn case(stem: &str) -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/cases/export/{stem}.rt"));
     let mut sources = Sources::default();
-    let id = sources.add(Source::new("small.rt", std::fs::read_to_string(&path).unwrap()));
+    let id = sources.add(Source::new(format!("{stem}.rt"), std::fs::read_to_string(&path).unwrap()));
     compile(&Folder::of(&path), &mut sources, id, &rt_lang::Options::default()).scene.unwrap()
 }

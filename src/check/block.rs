@@ -13,22 +13,39 @@ use std::collections::BTreeMap;
 /// What a turn of a loop counts by itself, in expressions: about as long as it takes.
 const TURN: u64 = 9;
 
-impl<'a> Checker<'a> {
-    /// The body of a branch of `for` or `if`, or of a file: statements, and no fields.
-    pub(super) fn items<'t>(&mut self, entries: &'t [Entry], inside: &str) -> Vec<Item<'t>> {
-        let mut items = vec![];
-        for entry in entries {
-            match entry {
-                Entry::Statement(statement) => items.push(Item::Statement(statement)),
-                Entry::Rows(rows) => items.push(Item::Rows(rows)),
-                Entry::Broken(broken) => items.push(Item::Broken(broken)),
-                Entry::Field(field) => {
-                    self.report(errors::field_of_nothing(&field.name, inside));
-                    self.infer(&field.value);
-                }
-            }
+/// The statements of a body, and its fields.
+pub(super) fn apart(entries: &[Entry]) -> (Vec<Item<'_>>, Vec<&ast::Field>) {
+    let (mut items, mut fields) = (vec![], vec![]);
+    for entry in entries {
+        match entry {
+            Entry::Statement(statement) => items.push(Item::Statement(statement)),
+            Entry::Rows(rows) => items.push(Item::Rows(rows)),
+            Entry::Broken(broken) => items.push(Item::Broken(broken)),
+            Entry::Field(field) => fields.push(field),
         }
-        items
+    }
+    (items, fields)
+}
+
+impl<'a> Checker<'a> {
+    /// Fields where there are none: in the body of a branch of `for` or `if`, or in a file. Its scope is open, for what
+    /// their values refer to.
+    /// Fields in a row are one slip, and none behind a thing whose `{` is missing.
+    pub(super) fn stray(&mut self, items: &[Item], fields: &[&ast::Field], inside: &str) {
+        let mut before = None;
+        for field in fields {
+            let start = field.name.span.start;
+            let last = items.partition_point(|item| item.start() < start).checked_sub(1);
+            let explained = match last.map(|last| &items[last]) {
+                Some(Item::Broken(broken)) if broken.name.is_some() => true,
+                _ => before == Some(last),
+            };
+            if !explained {
+                self.report(errors::field_of_nothing(&field.name, inside));
+            }
+            before = Some(last);
+            self.infer(&field.value);
+        }
     }
 
     /// Opens a scope with these statements and checks them. [`Checker::close`] ends it.
@@ -77,8 +94,9 @@ impl<'a> Checker<'a> {
 
     /// A body of `for` or `if`.
     fn branch(&mut self, body: &ast::Body, word: &str) -> Block {
-        let items = self.items(&body.entries, word);
+        let (items, fields) = apart(&body.entries);
         let mut block = self.open(&items, Place::Branch);
+        self.stray(&items, &fields, word);
         self.close(Some(&mut block));
         block
     }

@@ -4,10 +4,12 @@
 mod declared;
 mod query;
 mod types;
+mod unknown;
 
 pub(super) use declared::*;
 pub(super) use query::*;
 pub(super) use types::*;
+pub(super) use unknown::*;
 
 use super::block::{path_span, path_text};
 use super::types::{Kind, Making, Type, describe_wanted, list};
@@ -41,8 +43,17 @@ pub(super) fn closest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str>
             (distance, name.chars().next() != candidate.chars().next(), *candidate)
         })
         .filter(|(distance, ..)| *distance <= limit)
-        .min_by_key(|(distance, other_start, _)| (*distance, *other_start))
+        // Of two that are as far, the one with all the letters that were written is the likelier.
+        .min_by_key(|(distance, other_start, candidate)| {
+            (*distance, *other_start, !is_within(&lower, candidate))
+        })
         .map(|(.., candidate)| candidate)
+}
+
+/// Whether the letters of a name are all in another, in this order.
+fn is_within(name: &str, other: &str) -> bool {
+    let mut letters = other.chars();
+    name.chars().all(|letter| letters.any(|other| other == letter))
 }
 
 fn quoted(names: &[&str]) -> String {
@@ -74,6 +85,7 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
             with_familiar(diagnostic, here, name.span, candidates)
         }
         None if what == "kind" => diagnostic.help(format!("the kinds known here are {}", quoted(candidates))),
+        None if what == "function" => diagnostic.help(format!("the functions are {}", quoted(candidates))),
         None if what == "name" => diagnostic.help(format!("declare it: `let {} = …`", name.text)),
         None => diagnostic,
     }
@@ -91,7 +103,12 @@ fn said_otherwise(what: &str, name: &str) -> Option<String> {
         ("name", "no" | "off" | "False" | "FALSE") => "write `false`".into(),
         ("function", "rotate") => "`turn` turns about one axis: `turn(y: 30deg)`".into(),
         ("function", "translate") => "`move` moves: `move(0, 1m, 0)`".into(),
+        ("function", "len" | "size" | "count") => "`length(list)` is how many items it has".into(),
+        ("function", "vec3" | "vec" | "vector" | "Vector" | "point" | "float3" | "xyz") => {
+            "three values stand in parentheses: `(0, 1, 0)m`".into()
+        }
         ("function", "lerp") => "`mix(a, b, t)` lies between two values".into(),
+        ("kind", "new") => "leave it out: a thing begins with its kind: `sphere { … }`".into(),
         ("kind", "while") => "`for` repeats: `for i in range(7) { … }`".into(),
         ("unit", "meter" | "metre" | "meters" | "metres" | "M") => "metres are written `m`".into(),
         ("unit", "degree" | "degrees") => "degrees are written `deg`".into(),
@@ -247,12 +264,15 @@ pub(super) fn block_inside(path: &Path, kind: KindId) -> Diagnostic {
 }
 
 pub(super) fn cannot_hold(inner: &Path, outer: &str, category: Category) -> Diagnostic {
+    let kind = path_text(inner);
+    let known = familiar::field(outer, category, &kind);
     let help = match category {
+        _ if let Some(known) = known => known.hint.to_string(),
         Category::Shape | Category::Light => "put both into a `group { … }`".to_string(),
         _ => format!("end the `{outer}` before it"),
     };
     Diagnostic::new(Code::E0301, format!("`{outer}` cannot hold things"), path_span(inner))
-        .at(format!("`{}` does not belong inside", path_text(inner)))
+        .at(format!("`{kind}` does not belong inside"))
         .help(help)
 }
 

@@ -53,7 +53,10 @@ impl Checker<'_> {
                 Some(found) => (found.kind, found.ty),
                 None => {
                     let name = Name { text: name.clone(), span };
-                    let diagnostic = errors::unknown_name(&name, &self.value_names());
+                    let diagnostic = match self.is_setting(span) {
+                        true => errors::unknown_in_setting(&name),
+                        false => errors::unknown_name(&name, &self.value_names()),
+                    };
                     self.report(diagnostic);
                     (ExprKind::Invalid, Type::Invalid)
                 }

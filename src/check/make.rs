@@ -10,7 +10,7 @@ use crate::schema::{self, Category, Field, FieldType, KindId, PLACED, Preset, Ru
 use crate::span::Span;
 use crate::syntax::ast::{self, Entry, ExprKind as Tree, Name, StatementKind as Statement};
 use crate::units;
-use std::sync::Arc;
+use std::rc::Rc;
 
 impl Checker<'_> {
     /// A thing, in the picture or not. What is missing is for whoever uses it to say.
@@ -37,7 +37,11 @@ impl Checker<'_> {
             }
         }
         for construct in misplaced {
-            self.make(construct, None);
+            // One that is not known either is one slip.
+            let name = &construct.kind.first.text;
+            if schema::kind(name).is_some() || self.lookup(name).is_some() {
+                self.make(construct, None);
+            }
         }
         let inside = (block.is_some() && holds).then(|| self.keep_names());
         if block.is_some() {
@@ -50,7 +54,7 @@ impl Checker<'_> {
             }
         };
         make.fields.sort_by_key(|(place, _)| *place);
-        let written = Arc::new(Written {
+        let written = Rc::new(Written {
             name: name.map(|name| name.text.clone()),
             span: construct.span,
             fields: make.fields.iter().map(|(_, value)| value.span).collect(),
@@ -367,6 +371,10 @@ impl Checker<'_> {
             }
             Tree::Paren(inner) => return self.field_value(field, inner),
             _ => {}
+        }
+        if let Some(diagnostic) = self.unknown_value(field.ty, value) {
+            self.report(diagnostic);
+            return Expr::invalid(value.span);
         }
         let (checked, ty) = self.infer(value);
         if ty == Type::Invalid {

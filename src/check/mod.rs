@@ -21,6 +21,7 @@ mod setting;
 mod table;
 mod textures;
 mod types;
+mod unknown;
 
 pub use declared::{Declared, TYPES};
 pub use functions::Function;

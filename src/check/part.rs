@@ -1,5 +1,6 @@
 //! Params, parts, imports and functions: what is declared in one place and used in others.
 
+use super::block::apart;
 use super::declared::Declared;
 use super::program::StatementKind;
 use super::program::{Allow, Expr, ExprKind, FileId, FunctionBody, FunctionId, Param, Part, PartId};
@@ -9,7 +10,7 @@ use super::{Checker, errors};
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::schema::PLACED;
 use crate::syntax::ast::StatementKind as TreeStatement;
-use crate::syntax::ast::{self, BinaryOp, Entry, ExprKind as Tree, Name, Parameter, TypeName};
+use crate::syntax::ast::{self, BinaryOp, ExprKind as Tree, Name, Parameter, TypeName};
 
 /// What a call, or a use of a part, counts by itself, in expressions: about as long as it takes.
 const CALL: u64 = 9;
@@ -17,9 +18,9 @@ const CALL: u64 = 9;
 impl<'a> Checker<'a> {
     /// A whole file as a part.
     pub(super) fn file(&mut self, tree: &ast::File, main: bool) -> PartId {
-        let items = self.items(&tree.body.entries, "a file");
+        let (items, fields) = apart(&tree.body.entries);
         let place = if main { Place::Main } else { Place::Imported };
-        self.body("", &items, &[], place, None)
+        self.body("", &items, &fields, place, None)
     }
 
     /// `part name { … }`
@@ -34,16 +35,7 @@ impl<'a> Checker<'a> {
             self.report(errors::not_here("part", name, "a file or another part"));
             return (StatementKind::Nothing, Type::Invalid);
         }
-        let mut items = vec![];
-        let mut fields = vec![];
-        for entry in &body.entries {
-            match entry {
-                Entry::Statement(statement) => items.push(Item::Statement(statement)),
-                Entry::Rows(rows) => items.push(Item::Rows(rows)),
-                Entry::Broken(broken) => items.push(Item::Broken(broken)),
-                Entry::Field(field) => fields.push(field),
-            }
-        }
+        let (items, fields) = apart(&body.entries);
         let part = self.body(&name.text, &items, &fields, Place::Part, statement.doc.clone());
         (StatementKind::Nothing, Type::Part(part))
     }
@@ -70,7 +62,13 @@ impl<'a> Checker<'a> {
             .collect();
         self.begin_frame();
         let mut block = self.open(items, place);
-        let fields = self.part_fields(fields);
+        let fields = match place {
+            Place::Part => self.part_fields(fields),
+            _ => {
+                self.stray(items, fields, "a file");
+                vec![]
+            }
+        };
         let inside = self.keep_names();
         self.close(Some(&mut block));
         let slots = self.end_frame();
@@ -185,6 +183,10 @@ impl<'a> Checker<'a> {
 
     /// A value where a type was declared.
     pub(super) fn declared_value(&mut self, name: &str, declared: &Declared, value: &ast::Expr) -> Expr {
+        if let Some(diagnostic) = self.unknown_declared(declared, value) {
+            self.report(diagnostic);
+            return Expr::invalid(value.span);
+        }
         let (checked, ty) = self.infer(value);
         if ty == Type::Invalid || *declared == Declared::Invalid {
             return Expr::invalid(value.span);

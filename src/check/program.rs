@@ -12,6 +12,7 @@ use crate::syntax::Rows;
 use crate::syntax::ast::{BinaryOp, UnaryOp};
 use smol_str::SmolStr;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 use std::sync::Arc;
 
 macro_rules! ids {
@@ -413,7 +414,7 @@ pub struct Make {
     /// The names inside that can be referred to by path.
     pub inside: Option<InsideId>,
     /// What is the same for everything made here.
-    pub written: Arc<Written>,
+    pub written: Rc<Written>,
 }
 
 /// What is the same for all things made at one place.

@@ -9,6 +9,7 @@ use crate::span::Span;
 use crate::syntax::ast::StatementKind as Tree;
 use crate::syntax::{Rows, Shape};
 use std::collections::BTreeMap;
+use std::rc::Rc;
 use std::sync::Arc;
 
 impl Checker<'_> {
@@ -77,7 +78,7 @@ impl Checker<'_> {
 
 /// Says of what is made that its places are those of a row.
 fn in_rows(make: &mut Make, rows: &Arc<Rows>) {
-    Arc::make_mut(&mut make.written).rows = Some(rows.clone());
+    Rc::make_mut(&mut make.written).rows = Some(rows.clone());
     if let Base::Prototype(prototype) = &mut make.base {
         in_rows_within(&mut prototype.kind, rows);
     }

@@ -84,6 +84,15 @@ impl<'t> Item<'t> {
         }
     }
 
+    /// Where it begins.
+    pub(super) fn start(&self) -> u32 {
+        match self {
+            Item::Statement(statement) => statement.span.start,
+            Item::Rows(rows) => rows.span().start,
+            Item::Broken(broken) => broken.span.start,
+        }
+    }
+
     /// Whether it puts something into the picture by itself.
     fn drawn(&self) -> bool {
         matches!(self, Item::Statement(ast::Statement { kind: Tree::Thing { .. }, .. }))
@@ -147,7 +156,10 @@ impl Checker<'_> {
             match scope.names.get(&name.text) {
                 Some(&first) => self.report(errors::duplicate(name, Some(&scope.known[first].name))),
                 None => {
-                    self.report_shadowing(name);
+                    // With a kind that there is not, the name may be the kind.
+                    if !self.is_of_no_kind(statement, items) {
+                        self.report_shadowing(name);
+                    }
                     scope.names.insert(name.text.clone(), scope.known.len());
                 }
             }
@@ -183,6 +195,20 @@ impl Checker<'_> {
                 *slot = None;
             }
         }
+    }
+
+    /// Whether it is a thing with the name of a kind, whose own kind is unknown: `new sphere { … }`.
+    fn is_of_no_kind(&self, item: &Item, items: &[Item]) -> bool {
+        let Item::Statement(ast::Statement { kind: Tree::Thing { construct, name: Some(name) }, .. }) = item
+        else {
+            return false;
+        };
+        let kind = &construct.kind.first.text;
+        let declares = |item: &Item| item.name().is_some_and(|name| name.text == *kind);
+        schema::kind(&name.text).is_some()
+            && schema::kind(kind).is_none()
+            && !self.is_declared(kind)
+            && !items.iter().any(declares)
     }
 
     fn report_shadowing(&mut self, name: &Name) {

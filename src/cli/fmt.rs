@@ -25,7 +25,7 @@ pub fn run(arguments: &Fmt, terminal: Terminal, interrupt: &Interrupt) -> Result
 }
 
 fn one(file: &Path, arguments: &Fmt, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
-    let input = input::read(file)?;
+    let input = input::read(file, syntax::Limits::default().source)?;
     if let Some(refused) = input.refused {
         terminal.diagnostics(&[refused], &input.sources);
         return Ok(Exit::Diagnostics);

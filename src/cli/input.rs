@@ -4,7 +4,6 @@ use super::{Problem, plain};
 use rt_lang::diagnostic::{Code, Diagnostic};
 use rt_lang::source::{Source, Sources};
 use rt_lang::span::{SourceId, Span};
-use rt_lang::syntax::MAX_SOURCE;
 use std::fs::File;
 use std::io::{self, Read, stdin};
 use std::path::Path;
@@ -33,19 +32,19 @@ pub fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Reads a scene.
-pub fn read(path: &Path) -> Result<Input, Problem> {
+/// Reads a scene of at most so many bytes.
+pub fn read(path: &Path, most: usize) -> Result<Input, Problem> {
     let (name, bytes) = if is_standard(path) {
-        ("<stdin>".to_string(), limited(stdin().lock(), MAX_SOURCE as u64))
+        ("<stdin>".to_string(), limited(stdin().lock(), most as u64))
     } else {
         if path.is_dir() {
             let problem = Problem::new(format!("`{}` is a folder, not a scene", path.display()));
             return Err(problem.help("name a .rt file in it"));
         }
-        (path.display().to_string(), File::open(path).and_then(|file| limited(file, MAX_SOURCE as u64)))
+        (path.display().to_string(), File::open(path).and_then(|file| limited(file, most as u64)))
     };
     let bytes = bytes.map_err(|error| Problem::new(format!("cannot read `{name}`: {}", plain(&error))))?;
-    Ok(take(name, bytes))
+    Ok(take(name, bytes, most))
 }
 
 /// Reads the bytes of a picture.
@@ -70,8 +69,8 @@ fn limited(from: impl Read, most: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn take(name: String, bytes: Vec<u8>) -> Input {
-    let too_large = bytes.len() > MAX_SOURCE;
+fn take(name: String, bytes: Vec<u8>, most: usize) -> Input {
+    let too_large = bytes.len() > most;
     let (text, wrong) = match String::from_utf8(if too_large { vec![] } else { bytes }) {
         Ok(text) => (text, None),
         Err(error) => {
@@ -85,7 +84,7 @@ fn take(name: String, bytes: Vec<u8>) -> Input {
     let mut sources = Sources::default();
     let id = sources.add(Source::new(name, text));
     let refused = match wrong {
-        _ if too_large => Some(errors::too_large(id)),
+        _ if too_large => Some(errors::too_large(id, most)),
         Some((at, byte)) => Some(errors::not_utf8(id, at, byte)),
         None => None,
     };
@@ -106,8 +105,8 @@ mod errors {
         .help("save the file as UTF-8")
     }
 
-    pub fn too_large(id: SourceId) -> Diagnostic {
-        let message = format!("a scene file is at most {} MiB, this is larger", MAX_SOURCE >> 20);
+    pub fn too_large(id: SourceId, most: usize) -> Diagnostic {
+        let message = format!("a scene file is at most {} MiB, this is larger", most >> 20);
         Diagnostic::new(Code::E0406, message, Span::new(id, 0, 0))
     }
 
@@ -128,12 +127,12 @@ mod tests {
 
     #[test]
     fn bytes_that_are_no_text_are_pointed_at() {
-        let input = take("a.rt".into(), b"sphere {}\n\xc3\xa9 \xff rest".to_vec());
+        let input = take("a.rt".into(), b"sphere {}\n\xc3\xa9 \xff rest".to_vec(), 100);
         let refused = input.refused.unwrap();
         assert_eq!(refused.code, Code::E0009);
         assert_eq!(input.sources.get(input.id).line_column(refused.primary.span.start as usize), (2, 3));
         assert_eq!(refused.primary.text, "byte 0xFF, the 14th of the file");
-        assert!(take("a.rt".into(), b"".to_vec()).refused.is_none());
+        assert!(take("a.rt".into(), b"".to_vec(), 100).refused.is_none());
     }
 
     #[test]

@@ -25,7 +25,7 @@ pub struct Loaded {
 
 /// Reads and compiles a scene.
 pub fn load(path: &Path, reading: &Reading, overrides: &Overrides) -> Result<Loaded, Problem> {
-    let input = input::read(path)?;
+    let input = input::read(path, reading.limits().source)?;
     take(path, input, reading, overrides)
 }
 

@@ -27,7 +27,7 @@ impl<'p> Evaluator<'p> {
                 if let Some(block) = &make.block {
                     self.block(block, false);
                 }
-                Value::Made(Rc::new(self.assemble(kind, base, make)))
+                Value::Made(self.assemble(kind, base, make))
             }
         }
     }
@@ -55,9 +55,9 @@ impl<'p> Evaluator<'p> {
     }
 
     /// A thing with its fields, each in its range.
-    fn assemble(&mut self, kind: KindId, base: Option<Rc<Made>>, make: &Make) -> Made {
+    fn assemble(&mut self, kind: KindId, base: Option<Rc<Made>>, make: &Make) -> Rc<Made> {
         let mut mask = 0;
-        let mut values = SmallVec::new();
+        let mut values = SmallVec::with_capacity(make.fields.len());
         let common = kind.get().fields.len();
         for (place, expr) in &make.fields {
             let index = match *place {
@@ -67,7 +67,8 @@ impl<'p> Evaluator<'p> {
             };
             let value = self.expr(expr);
             mask |= 1 << index;
-            values.push(match errors::out_of_range(kind, kind.field(index), &value, expr.span) {
+            let field = kind.field(index);
+            values.push(match errors::out_of_range(kind, field, &value, expr.span) {
                 Some(diagnostic) => self.report(diagnostic),
                 None => value,
             });
@@ -76,7 +77,8 @@ impl<'p> Evaluator<'p> {
         let span = self.here(make.written.span);
         // What a prototype holds, the thing holds; a group adds its own.
         let group = base.as_ref().and_then(|base| base.group.clone());
-        Made { kind, span, mask, values, written: make.written.clone(), row: self.row_index(), base, group }
+        let (written, row) = (make.written.clone(), self.row_index());
+        Rc::new(Made { kind, span, mask, values, written, row, base, group })
     }
 
     /// Puts a thing into the picture. Gives what its name means, where that is wanted.
@@ -96,8 +98,8 @@ impl<'p> Evaluator<'p> {
                     if let Some(block) = &make.block {
                         self.block(block, false);
                     }
-                    let made = Rc::new(self.assemble(kind, base, make));
-                    self.emit(made, span).map(|made| (made, [].into(), Default::default()))
+                    let made = self.assemble(kind, base, make);
+                    self.emit(made, span).map(|made| (made, None, Default::default()))
                 }
             },
         };
@@ -139,7 +141,7 @@ impl<'p> Evaluator<'p> {
             return None;
         }
         let mut link = self.out().link(span, outer_link);
-        let mut inside: Inside = [].into();
+        let mut inside: Inside = None;
         let mut shift = Default::default();
         let held = base.as_ref().and_then(|base| base.group.clone());
         let group = match (&base, &held) {
@@ -162,7 +164,7 @@ impl<'p> Evaluator<'p> {
                 shift = Default::default();
             }
         }
-        let made = Rc::new(self.assemble(group::KIND, base, make));
+        let made = self.assemble(group::KIND, base, make);
         (self.group, self.link) = (outer, outer_link);
         self.leave();
         self.out().place_group(group, &made);
@@ -185,19 +187,19 @@ impl<'p> Evaluator<'p> {
     fn group_value(&mut self, make: &Make, base: Option<Rc<Made>>) -> Value {
         let held = base.as_ref().and_then(|base| base.group.clone());
         if make.block.is_none() && held.is_some() {
-            return Value::Made(Rc::new(self.assemble(group::KIND, base, make)));
+            return Value::Made(self.assemble(group::KIND, base, make));
         }
         if !self.enter(make.written.span) {
             return Value::Invalid;
         }
         let outer = self.begin_buffer();
-        let mut inside: Inside = [].into();
+        let mut inside: Inside = None;
         if let Some(held) = &held {
             let (level, span) = (self.buffers.len() - 1, make.written.span);
             let shift = self.append(held, 0, NONE, span);
-            let moved =
-                held.inside.iter().map(|(slot, value)| (*slot, super::query::carried(value, shift, level)));
-            inside = moved.collect();
+            let names = held.inside.iter().flat_map(|names| names.iter());
+            let moved = names.map(|(slot, value)| (*slot, super::query::carried(value, shift, level)));
+            inside = Some(moved.collect());
         }
         if let Some(block) = &make.block {
             self.block(block, false);
@@ -208,8 +210,8 @@ impl<'p> Evaluator<'p> {
         let mut made = self.assemble(group::KIND, base, make);
         let built = self.end_buffer(outer);
         self.leave();
-        made.group = Some(Rc::new(Group { built, level: self.buffers.len(), inside }));
-        Value::Made(Rc::new(made))
+        Rc::make_mut(&mut made).group = Some(Rc::new(Group { built, level: self.buffers.len(), inside }));
+        Value::Made(made)
     }
 
     /// Begins to put things aside. [`Evaluator::end_buffer`] gives them.
@@ -228,7 +230,7 @@ impl<'p> Evaluator<'p> {
     /// The values of the names that can be referred to from outside.
     pub(super) fn inside(&mut self, inside: crate::check::InsideId) -> Inside {
         let names = &self.program.insides[inside.index()].names;
-        names.values().map(|name| (name.slot as u32, self.frame.get(name.slot))).collect()
+        Some(names.values().map(|name| (name.slot as u32, self.frame.get(name.slot))).collect())
     }
 
     /// A field of [`PLACED`] by its index there.
@@ -267,14 +269,5 @@ fn flat(made: Rc<Made>) -> Rc<Made> {
         rows: None,
     };
     let (kind, span, group) = (made.kind, made.span, made.group.clone());
-    Rc::new(Made {
-        kind,
-        span,
-        mask,
-        values,
-        written: std::sync::Arc::new(written),
-        row: 0,
-        base: None,
-        group,
-    })
+    Rc::new(Made { kind, span, mask, values, written: Rc::new(written), row: 0, base: None, group })
 }

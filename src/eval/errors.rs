@@ -7,7 +7,6 @@ use crate::schema::{Field, FieldType, KindId, Range};
 use crate::span::Span;
 use crate::syntax::ast::BinaryOp;
 use crate::units::{self, Dim};
-use smallvec::{SmallVec, smallvec};
 
 /// A number as a person would write it.
 fn show(x: f64) -> String {
@@ -41,35 +40,42 @@ pub(super) fn out_of_range(kind: KindId, field: &Field, value: &Value, span: Spa
         let parts = texture.parts.iter().flatten();
         return parts.into_iter().find_map(|part| out_of_range(kind, field, &part.value, part.span));
     }
-    if field.range.is_any() {
-        return None;
-    }
-    let parts: SmallVec<[f64; 3]> = match value {
-        Value::Number(x) => smallvec![*x],
-        Value::Color(c) => SmallVec::from(c.to_array()),
-        Value::Tuple(v) if matches!(field.ty, FieldType::IntTuple(2)) => smallvec![v.x, v.y],
-        // A point as the target of a field that also takes a distance is not bound by the distance's range.
-        Value::Tuple(v) if matches!(field.ty, FieldType::Tuple(..)) => SmallVec::from(v.to_array()),
-        _ => return None,
+    let refused = |x: &f64| !field.range.contains(*x);
+    let bad = match value {
+        Value::Number(x) => Some(*x).filter(refused),
+        Value::Color(c) => c.to_array().into_iter().find(refused),
+        Value::Tuple(v) => match field.ty {
+            FieldType::IntTuple(2) => [v.x, v.y].into_iter().find(refused),
+            // A point as the target of a field that also takes a distance is not bound by the distance's range.
+            FieldType::Tuple(..) => v.to_array().into_iter().find(refused),
+            _ => None,
+        },
+        _ => None,
     };
-    let bad = parts.into_iter().find(|part| !field.range.contains(*part))?;
+    bad.map(|bad| beyond(kind, field, bad, span))
+}
+
+/// A field with a number that its range refuses.
+fn beyond(kind: KindId, field: &Field, bad: f64, span: Span) -> Diagnostic {
     let dim = dimension(field.ty);
     let shown = show_quantity(bad, dim);
     let allowed = allowed(field.ty, field.range);
     if is_color(field.ty) && bad > field.range.high {
         let message = format!("this `{}` reflects more than it receives", kind.get().name);
         let diagnostic = Diagnostic::new(Code::E0402, message, span);
-        return Some(
-            diagnostic.at(format!("a channel of {shown}")).help("no channel of a reflectance is above 1"),
-        );
+        let help = match bad > 2.0 && bad <= 255.0 {
+            true => "channels go from 0 to 1; those of 0 to 255 are written `#d94f30`",
+            false => "no channel of a reflectance is above 1",
+        };
+        return diagnostic.at(format!("a channel of {shown}")).help(help);
     }
     let what = if is_color(field.ty) { "channels of " } else { "" };
     let message = format!("{what}`{}` must be {allowed}, this is {shown}", field.name);
     let diagnostic = Diagnostic::new(Code::E0401, message, span).at("out of range");
-    Some(match mend_of_range(field, bad) {
+    match mend_of_range(field, bad) {
         Some(help) => diagnostic.help(help),
         None => diagnostic,
-    })
+    }
 }
 
 /// What is probably meant by a value out of range, where that is more than the range itself says.
@@ -107,6 +113,13 @@ pub(super) fn no_direction(field: &Field, span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0403, format!("`{}` has length 0, and so no direction", field.name), span)
         .at("points nowhere")
         .help("such as `(0, 1, 0)` for upwards")
+}
+
+/// `scale(0)`
+pub(super) fn scale_to_nothing(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0403, "a `scale` of 0 flattens all to nothing", span)
+        .at("leaves no extent")
+        .help("give factors other than 0; what is flat is a `disk`, or a `box` that is thin")
 }
 
 pub(super) fn too_many_textures(span: Span) -> Diagnostic {

@@ -38,7 +38,6 @@ impl Evaluator<'_> {
                 }
                 Value::Tuple(tuple)
             }
-            // Handled before it comes here, as the most common of all.
             ExprKind::Name { up, slot } => {
                 self.frame.outer(*up).map_or(Value::Invalid, |frame| frame.get(*slot))
             }
@@ -92,7 +91,10 @@ impl Evaluator<'_> {
                     Value::Number(x) if *int && x.is_finite() && x.abs() > MAX_INT => {
                         self.report(errors::inexact(span))
                     }
-                    _ => self.finite_result(*operator, result, &left, &right, span),
+                    result if !is_finite(result) => {
+                        self.report(errors::not_finite(*operator, &left, &right, span))
+                    }
+                    _ => result,
                 }
             }
             ExprKind::Call { function, arguments } => {
@@ -172,19 +174,9 @@ impl Evaluator<'_> {
     fn finite(&mut self, value: Value, span: Span) -> Value {
         if is_finite(&value) { value } else { self.report(errors::number_not_finite(span)) }
     }
-
-    fn finite_result(
-        &mut self,
-        operator: BinaryOp,
-        result: Value,
-        a: &Value,
-        b: &Value,
-        span: Span,
-    ) -> Value {
-        if is_finite(&result) { result } else { self.report(errors::not_finite(operator, a, b, span)) }
-    }
 }
 
+#[inline]
 fn is_finite(value: &Value) -> bool {
     match value {
         Value::Number(x) => x.is_finite(),
@@ -197,39 +189,59 @@ fn is_finite(value: &Value) -> bool {
 fn binary(operator: BinaryOp, left: &Value, right: &Value) -> Value {
     use BinaryOp::*;
     use Value::{Bool, Color, Number, Transform, Tuple};
-    match (operator, left, right) {
-        (Pipe, Transform(first), Transform(then)) => Transform(Rc::new(**then * **first)),
-        (Or, Bool(a), Bool(b)) => Bool(*a || *b),
-        (And, Bool(a), Bool(b)) => Bool(*a && *b),
-        (Equal, a, b) => equal(a, b).map_or(Value::Invalid, Bool),
-        (NotEqual, a, b) => equal(a, b).map_or(Value::Invalid, |equal| Bool(!equal)),
-        (Less, Number(a), Number(b)) => Bool(a < b),
-        (LessEqual, Number(a), Number(b)) => Bool(a <= b),
-        (Greater, Number(a), Number(b)) => Bool(a > b),
-        (GreaterEqual, Number(a), Number(b)) => Bool(a >= b),
-        (Add, Number(a), Number(b)) => Number(a + b),
-        (Subtract, Number(a), Number(b)) => Number(a - b),
-        (Multiply, Number(a), Number(b)) => Number(a * b),
-        (Divide, Number(a), Number(b)) => Number(a / b),
-        (Add, Tuple(a), Tuple(b)) => Tuple(*a + *b),
-        (Subtract, Tuple(a), Tuple(b)) => Tuple(*a - *b),
-        (Multiply, Tuple(a), Number(b)) | (Multiply, Number(b), Tuple(a)) => Tuple(*a * *b),
-        (Divide, Tuple(a), Number(b)) => Tuple(*a / *b),
-        (Add, Color(a), Color(b)) => Color(*a + *b),
-        (Subtract, Color(a), Color(b)) => Color(*a - *b),
-        (Multiply, Color(a), Color(b)) => Color(*a * *b),
-        (Multiply, Color(a), Number(b)) | (Multiply, Number(b), Color(a)) => Color(*a * *b),
-        (Divide, Color(a), Number(b)) => Color(*a / *b),
+    match (left, right) {
+        (Number(a), Number(b)) => numbers(operator, *a, *b),
+        (Tuple(a), Tuple(b)) => match operator {
+            Add => Tuple(*a + *b),
+            Subtract => Tuple(*a - *b),
+            Equal => Bool(a == b),
+            NotEqual => Bool(a != b),
+            _ => Value::Invalid,
+        },
+        (Tuple(v), Number(x)) | (Number(x), Tuple(v)) if operator == Multiply => Tuple(*v * *x),
+        (Tuple(v), Number(x)) if operator == Divide => Tuple(*v / *x),
+        (Color(a), Color(b)) => match operator {
+            Add => Color(*a + *b),
+            Subtract => Color(*a - *b),
+            Multiply => Color(*a * *b),
+            Equal => Bool(a == b),
+            NotEqual => Bool(a != b),
+            _ => Value::Invalid,
+        },
+        (Color(c), Number(x)) | (Number(x), Color(c)) if operator == Multiply => Color(*c * *x),
+        (Color(c), Number(x)) if operator == Divide => Color(*c / *x),
+        (Bool(a), Bool(b)) => match operator {
+            Or => Bool(*a || *b),
+            And => Bool(*a && *b),
+            Equal => Bool(a == b),
+            NotEqual => Bool(a != b),
+            _ => Value::Invalid,
+        },
+        (Value::Text(a), Value::Text(b)) => match operator {
+            Equal => Bool(a == b),
+            NotEqual => Bool(a != b),
+            _ => Value::Invalid,
+        },
+        (Transform(first), Transform(then)) if operator == Pipe => Transform(Rc::new(**then * **first)),
         _ => Value::Invalid,
     }
 }
 
-fn equal(a: &Value, b: &Value) -> Option<bool> {
-    match (a, b) {
-        (Value::Number(a), Value::Number(b)) => Some(a == b),
-        (Value::Bool(a), Value::Bool(b)) => Some(a == b),
-        (Value::Text(a), Value::Text(b)) => Some(a == b),
-        (Value::Tuple(a), Value::Tuple(b)) | (Value::Color(a), Value::Color(b)) => Some(a == b),
-        _ => None,
+#[inline]
+fn numbers(operator: BinaryOp, a: f64, b: f64) -> Value {
+    use BinaryOp::*;
+    use Value::{Bool, Number};
+    match operator {
+        Add => Number(a + b),
+        Subtract => Number(a - b),
+        Multiply => Number(a * b),
+        Divide => Number(a / b),
+        Equal => Bool(a == b),
+        NotEqual => Bool(a != b),
+        Less => Bool(a < b),
+        LessEqual => Bool(a <= b),
+        Greater => Bool(a > b),
+        GreaterEqual => Bool(a >= b),
+        Or | And | Pipe | To => Value::Invalid,
     }
 }

@@ -30,10 +30,17 @@ impl Frame {
         (0..up).try_fold(self, |frame, _| frame.around.as_ref())
     }
 
+    #[inline(always)]
     pub(super) fn get(&self, slot: usize) -> Value {
-        self.values.borrow().get(slot).cloned().unwrap_or(Value::Invalid)
+        match self.values.borrow().get(slot) {
+            // Most are.
+            Some(Value::Number(x)) => Value::Number(*x),
+            Some(value) => value.clone(),
+            None => Value::Invalid,
+        }
     }
 
+    #[inline]
     pub(super) fn set(&self, slot: usize, value: Value) {
         if let Some(place) = self.values.borrow_mut().get_mut(slot) {
             *place = value;

@@ -81,6 +81,10 @@ pub(super) fn call(
         (Checker | Stripes | Noise | Image, _) => {
             super::texture::make(function, arguments, &(0..arguments.len()).map(span).collect::<Vec<_>>())
         }
+        (Scale, numbers) if numbers.iter().any(|x| as_number(x) == Some(0.0)) => {
+            let zero = numbers.iter().position(|x| as_number(x) == Some(0.0)).unwrap_or(0);
+            Err(Box::new(errors::scale_to_nothing(span(zero))))
+        }
         (Scale, [Number(k)]) => transform(DAffine3::from_scale(DVec3::splat(*k))),
         (Scale, [Number(x), Number(y), Number(z)]) => transform(DAffine3::from_scale(DVec3::new(*x, *y, *z))),
         (Turn, [Number(axis), Number(angle)]) => {
@@ -116,6 +120,7 @@ fn rand(numbers: impl Iterator<Item = f64>) -> f64 {
     (mix_bits(state) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
+#[inline]
 fn mix_bits(mut z: u64) -> u64 {
     z = z.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

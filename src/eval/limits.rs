@@ -3,6 +3,7 @@
 use super::{Evaluator, Value, errors};
 use crate::diagnostic::Diagnostic;
 use crate::span::Span;
+use crate::syntax;
 
 /// What evaluating a file may take. Going over one is an error at the place.
 #[derive(Clone, Copy, Debug)]
@@ -15,11 +16,19 @@ pub struct Limits {
     pub items: usize,
     /// Expressions that are evaluated, those of each turn of a loop and of each call counted anew.
     pub steps: u64,
+    /// What reading the files may take, which is done before.
+    pub text: syntax::Limits,
 }
 
 impl Default for Limits {
     fn default() -> Limits {
-        Limits { things: 10_000_000, levels: 64, items: 1_000_000, steps: 1_000_000_000 }
+        Limits {
+            things: 10_000_000,
+            levels: 64,
+            items: 1_000_000,
+            steps: 1_000_000_000,
+            text: syntax::Limits::default(),
+        }
     }
 }
 

@@ -76,6 +76,7 @@ impl List {
     }
 
     /// The item at an index from 0.
+    #[inline]
     pub fn get(&self, index: usize) -> Option<Value> {
         if index >= self.len() {
             return None;

@@ -48,7 +48,7 @@ impl Evaluator<'_> {
                 let outer = self.begin_buffer();
                 let written =
                     crate::check::Written { name: None, span: part.span, fields: [].into(), rows: None };
-                self.draw_part_value(part, std::sync::Arc::new(written), &[span], false);
+                self.draw_part_value(part, Rc::new(written), &[span], false);
                 self.bounds_of_buffer(outer, span)
             }
             _ => Value::Invalid,

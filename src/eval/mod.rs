@@ -164,22 +164,24 @@ impl<'p> Evaluator<'p> {
         Evaluator::new(&program, Limits::default(), measure).expr(expr)
     }
 
+    /// The value of an expression. Half of all are numbers and names, which are found without a call.
+    #[inline(always)]
     fn expr(&mut self, expr: &Expr) -> Value {
         match &expr.kind {
             ExprKind::Number(value) if value.is_finite() => Value::Number(*value),
-            ExprKind::Name { up, slot } => match self.frame.outer(*up) {
-                Some(frame) => frame.get(*slot),
-                None => Value::Invalid,
-            },
-            kind => {
-                if self.depth >= limits::MAX_DEPTH {
-                    return self.halt(errors::too_deep(expr.span));
-                }
-                self.depth += 1;
-                let value = self.value(kind, expr.span);
-                self.depth -= 1;
-                value
-            }
+            ExprKind::Name { up: 0, slot } => self.frame.get(*slot),
+            _ => self.deeper(expr),
         }
+    }
+
+    /// The value of an expression that may hold others.
+    fn deeper(&mut self, expr: &Expr) -> Value {
+        if self.depth >= limits::MAX_DEPTH {
+            return self.halt(errors::too_deep(expr.span));
+        }
+        self.depth += 1;
+        let value = self.value(&expr.kind, expr.span);
+        self.depth -= 1;
+        value
     }
 }

@@ -9,7 +9,6 @@ use crate::schema::{PLACED, group};
 use crate::span::Span;
 use smallvec::SmallVec;
 use std::rc::Rc;
-use std::sync::Arc;
 
 /// What is set aside while a part or function is evaluated.
 struct Outside<'p> {
@@ -123,7 +122,7 @@ impl<'p> Evaluator<'p> {
     pub(super) fn draw_part_value(
         &mut self,
         value: &PartValue,
-        written: Arc<Written>,
+        written: Rc<Written>,
         chain: &[Span],
         named: bool,
     ) -> Option<(Rc<Made>, Inside, Shift)> {
@@ -153,7 +152,7 @@ impl<'p> Evaluator<'p> {
                 placed[*index].get_or_insert(own);
             }
         }
-        let inside = if named { self.inside(part.inside) } else { [].into() };
+        let inside = if named { self.inside(part.inside) } else { None };
         frame.clear();
         self.come_outside(outside);
         self.uses.truncate(self.uses.len() - chain.len());
@@ -232,6 +231,6 @@ fn as_group(placed: [Option<Given>; PLACED.len()], written: &Written) -> Made {
         }
     }
     let own = Written { name: written.name.clone(), span: written.span, fields: spans.into(), rows: None };
-    let (span, written) = (own.span, Arc::new(own));
+    let (span, written) = (own.span, Rc::new(own));
     Made { kind: group::KIND, span, mask, values, written, row: 0, base: None, group: None }
 }

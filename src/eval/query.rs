@@ -69,7 +69,8 @@ impl<'p> Evaluator<'p> {
     /// A name inside a thing.
     pub(super) fn name_inside(&mut self, value: &Expr, slot: usize) -> Value {
         let Value::Thing(thing) = self.expr(value) else { return Value::Invalid };
-        let found = thing.inside.iter().find(|(known, _)| *known as usize == slot);
+        let found =
+            thing.inside.iter().flat_map(|names| names.iter()).find(|(known, _)| *known as usize == slot);
         let Some((_, value)) = found else { return Value::Invalid };
         match carried(value, thing.shift, thing.level) {
             // Seen from where the path began.

@@ -14,7 +14,6 @@ use crate::span::Span;
 use smallvec::SmallVec;
 use smol_str::SmolStr;
 use std::rc::Rc;
-use std::sync::Arc;
 
 /// The value of an expression, in base units. Its type was checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,7 +67,7 @@ pub struct Made {
     /// Their values, in that order.
     pub(super) values: SmallVec<[Value; 2]>,
     /// What is the same for all that is made here.
-    pub(super) written: Arc<Written>,
+    pub(super) written: Rc<Written>,
     /// Of which row, if it was made of rows.
     pub(super) row: u32,
     /// What it was made from.
@@ -88,8 +87,8 @@ pub(super) struct Group {
     pub(super) inside: Inside,
 }
 
-/// The values of the names inside a thing, by slot.
-pub(super) type Inside = Rc<[(u32, Value)]>;
+/// The values of the names inside a thing, by slot; none where there are no names.
+pub(super) type Inside = Option<Rc<[(u32, Value)]>>;
 
 /// A part that is not drawn, with what it is given.
 #[derive(Debug)]
@@ -142,7 +141,7 @@ pub struct Given {
 impl Made {
     /// A thing of a kind with nothing given.
     pub fn new(kind: KindId, span: Span) -> Made {
-        let written = Arc::new(Written { name: None, span, fields: [].into(), rows: None });
+        let written = Rc::new(Written { name: None, span, fields: [].into(), rows: None });
         Made { kind, span, mask: 0, values: SmallVec::new(), written, row: 0, base: None, group: None }
     }
 

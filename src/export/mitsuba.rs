@@ -3,18 +3,18 @@
 //! A path of `bounces` scatterings has `bounces` + 1 segments: `max_depth`. A camera looks along +z with +x to the
 //! left. Opaque materials are black from behind unless they are `twosided`.
 
+mod paint;
+
 use super::triangles::Triangles;
 use super::{TESSELLATE, Writer, media, number, numbers, panorama, triangles};
 use crate::color::Rgb;
 use crate::math::{DAffine3, DMat3, DVec3, PI, atan2};
 use crate::scene::shape::{Form, Placed, Quadric};
 use crate::scene::{Filter, Light, Material, OriginId, Panorama, Primitive, Projection, Shape};
+use paint::{Lay, paint};
 
 /// The size of a plane's stand-in, in sizes of the scene.
 const FAR: f64 = 1e4;
-
-/// Why a texture is not written.
-const TEXTURES: &str = "lays textures on surfaces, where ours fill space or lie otherwise";
 
 pub(super) fn write(writer: &mut Writer) {
     let scene = writer.scene;
@@ -130,7 +130,10 @@ fn sky(writer: &mut Writer, radiance: Rgb, panorama: &Panorama) {
 }
 
 fn surface(writer: &mut Writer, primitive: &Primitive, around: f64) {
-    let Some(material) = material(writer, primitive, around) else { return };
+    if writer.scene.material(primitive).texture().is_some() {
+        return paint::surface(writer, primitive);
+    }
+    let Some(material) = material(writer, primitive, around, None) else { return };
     let origin = Some(primitive.origin);
     match &primitive.shape {
         Shape::Sphere { center, radius } => {
@@ -214,29 +217,29 @@ fn shape(writer: &mut Writer, kind: &str, inner: &str, material: &str) {
 }
 
 /// The material of a shape and, where it glows, its emitter.
-fn material(writer: &mut Writer, primitive: &Primitive, around: f64) -> Option<String> {
+fn material(writer: &mut Writer, primitive: &Primitive, around: f64, lay: Option<&Lay>) -> Option<String> {
     let origin = Some(primitive.origin);
     let two_sided = |inner: String| format!("<bsdf type=\"twosided\">{inner}</bsdf>");
     Some(match writer.scene.material(primitive) {
         Material::Diffuse { color } => {
-            let color = writer.plain(origin, *color, TEXTURES)?;
-            two_sided(format!("<bsdf type=\"diffuse\">{}</bsdf>", rgb("reflectance", color)))
+            let color = paint(writer, primitive, "reflectance", *color, lay)?;
+            two_sided(format!("<bsdf type=\"diffuse\">{color}</bsdf>"))
         }
         Material::Mirror { color } => {
-            let color = writer.plain(origin, *color, TEXTURES)?;
+            let color = paint(writer, primitive, "specular_reflectance", *color, lay)?;
             let none = "<string name=\"material\" value=\"none\"/>";
-            two_sided(format!("<bsdf type=\"conductor\">{none}{}</bsdf>", rgb("specular_reflectance", color)))
+            two_sided(format!("<bsdf type=\"conductor\">{none}{color}</bsdf>"))
         }
         Material::Metal { color, alpha } => {
-            let color = writer.plain(origin, *color, TEXTURES)?;
+            let color = paint(writer, primitive, "base_color", *color, lay)?;
             let how = "facets hide and shadow each other independently, and none is quite smooth";
             writer.nearly(origin, "has other metals", how).then_some(())?;
             let fields = [("metallic", 1.0), ("roughness", alpha.sqrt()), ("specular", 0.5)];
             let fields: String = fields.map(|(name, value)| float_of(name, value)).concat();
-            two_sided(format!("<bsdf type=\"principled\">{}{fields}</bsdf>", rgb("base_color", color)))
+            two_sided(format!("<bsdf type=\"principled\">{color}{fields}</bsdf>"))
         }
         Material::Plastic { color, ior, alpha } => {
-            let color = rgb("diffuse_reflectance", writer.plain(origin, *color, TEXTURES)?);
+            let color = paint(writer, primitive, "diffuse_reflectance", *color, lay)?;
             let kind = rough(writer, origin, "plastic", *alpha)?;
             let fields = [float_of("int_ior", *ior), float_of("ext_ior", 1.0)].concat();
             let nonlinear = "<boolean name=\"nonlinear\" value=\"true\"/>";
@@ -270,7 +273,7 @@ fn material(writer: &mut Writer, primitive: &Primitive, around: f64) -> Option<S
             format!("{black}<emitter type=\"area\">{}</emitter>", rgb("radiance", *radiance))
         }
         Material::Emitter { pattern: Some(_), .. } => {
-            writer.refuse(origin, TEXTURES, None);
+            writer.refuse(origin, "is not told of glowing surfaces with textures", None);
             return None;
         }
     })

@@ -6,6 +6,7 @@
 //!
 //! Exposure, tone mapping and seeds are not part of an export: all three write linear radiance.
 
+mod cells;
 mod media;
 mod mitsuba;
 mod pbrt;
@@ -13,9 +14,8 @@ mod panorama;
 mod pov;
 mod triangles;
 
-use crate::color::Rgb;
 use crate::scene::shape::Bounds;
-use crate::scene::{Background, Filter, OriginId, Paint, Scene, Target};
+use crate::scene::{Background, Filter, OriginId, Scene, Target};
 use std::collections::BTreeSet;
 
 /// A renderer to write for.
@@ -89,7 +89,8 @@ impl Renderer {
 ///
 /// Everything that it cannot say, in the order of the scene.
 pub fn export(scene: &Scene, renderer: Renderer, options: Options) -> Result<Exported, Vec<Unsaid>> {
-    let mut writer = Writer { scene, renderer, options, out: Exported::default(), unsaid: vec![] };
+    let mut writer =
+        Writer { scene, renderer, options, out: Exported::default(), unsaid: vec![], textures: 0 };
     writer.settings();
     match renderer {
         Renderer::Mitsuba => mitsuba::write(&mut writer),
@@ -109,6 +110,8 @@ struct Writer<'s> {
     options: Options,
     out: Exported,
     unsaid: Vec<Unsaid>,
+    /// How many textures were named.
+    textures: usize,
 }
 
 impl Writer<'_> {
@@ -139,17 +142,6 @@ impl Writer<'_> {
             self.refuse(origin, what, Some(APPROXIMATE));
         }
         self.options.approximate
-    }
-
-    /// A colour as it is; textures are refused, with what the renderer does in their place.
-    fn plain(&mut self, origin: Option<OriginId>, paint: Paint, textures: &str) -> Option<Rgb> {
-        match paint {
-            Paint::Plain(color) => Some(color),
-            Paint::Texture(_) => {
-                self.refuse(origin, textures, None);
-                None
-            }
-        }
     }
 
     /// Samples a pixel.

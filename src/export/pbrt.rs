@@ -4,17 +4,17 @@
 //! in tangents, as [`crate::scene::Camera::half_extent`] is. `maxdepth` counts scatterings, as `bounces` does.
 
 use super::triangles::Triangles;
-use super::{TESSELLATE, Writer, media, number, numbers, triangles};
+use super::{TESSELLATE, Writer, cells, media, number, numbers, triangles};
 use crate::color::Rgb;
 use crate::math::{DAffine3, DMat3, DVec3, PI};
 use crate::scene::shape::{Form, Quadric};
-use crate::scene::{Filter, Light, Material, Primitive, Projection, Shape};
+use crate::scene::{Filter, Light, Material, Paint, Primitive, Projection, Shape, Texture};
 
 /// The size of a plane's stand-in, in sizes of the scene.
 const FAR: f64 = 1e4;
 
-/// Why a texture is not written.
-const TEXTURES: &str = "filters textures, and lays pictures on surfaces otherwise";
+/// How far below the surface a solid texture is seen, in cells: well beyond the rounding of 32 bits.
+const DEPTH: f64 = 1e-3;
 
 pub(super) fn write(writer: &mut Writer) {
     camera(writer);
@@ -99,27 +99,27 @@ fn material(writer: &mut Writer, primitive: &Primitive, around: f64) -> Option<(
     let origin = Some(primitive.origin);
     let line = match writer.scene.material(primitive) {
         Material::Diffuse { color } => {
-            format!("Material \"diffuse\" {}", rgb("reflectance", writer.plain(origin, *color, TEXTURES)?))
+            format!("Material \"diffuse\" {}", painted(writer, primitive, "reflectance", *color)?)
         }
         Material::Mirror { color } => {
-            let color = writer.plain(origin, *color, TEXTURES)?;
+            let color = painted(writer, primitive, "reflectance", *color)?;
             writer
                 .nearly(origin, "has no perfect mirror", "it reflects more at grazing angles")
                 .then_some(())?;
-            format!("Material \"conductor\" {} \"float roughness\" 0", rgb("reflectance", color))
+            format!("Material \"conductor\" {color} \"float roughness\" 0")
         }
         Material::Metal { color, alpha } => {
-            let color = writer.plain(origin, *color, TEXTURES)?;
+            let color = painted(writer, primitive, "reflectance", *color)?;
             let how = "Fresnel's equations take the place of Schlick's approximation";
             writer.nearly(origin, "has other metals", how).then_some(())?;
-            format!("Material \"conductor\" {}{}", rgb("reflectance", color), roughness(*alpha))
+            format!("Material \"conductor\" {color}{}", roughness(*alpha))
         }
         Material::Plastic { color, ior, alpha } => {
-            let color = writer.plain(origin, *color, TEXTURES)?;
+            let color = painted(writer, primitive, "reflectance", *color)?;
             let how = "light walks at random between coat and base";
             writer.nearly(origin, "has other plastics", how).then_some(())?;
             let eta = format!(" \"float eta\" {}", number(*ior));
-            format!("Material \"coateddiffuse\" {}{eta}{}", rgb("reflectance", color), roughness(*alpha))
+            format!("Material \"coateddiffuse\" {color}{eta}{}", roughness(*alpha))
         }
         Material::Dielectric { ior, absorption, alpha } => {
             if absorption.max_element() == f64::INFINITY {
@@ -149,12 +149,52 @@ fn material(writer: &mut Writer, primitive: &Primitive, around: f64) -> Option<(
             format!("Material \"diffuse\" {}", rgb("reflectance", Rgb::ZERO))
         }
         Material::Emitter { pattern: Some(_), .. } => {
-            writer.refuse(origin, TEXTURES, None);
+            writer.refuse(origin, "has no glowing surfaces with solid textures", None);
             return None;
         }
     };
     writer.put(line);
     Some(())
+}
+
+/// A colour of a material: as it is, or a texture by its name.
+fn painted(writer: &mut Writer, primitive: &Primitive, name: &str, paint: Paint) -> Option<String> {
+    let id = match paint {
+        Paint::Plain(color) => return Some(rgb(name, color)),
+        Paint::Texture(id) => id,
+    };
+    let origin = Some(primitive.origin);
+    let (a, b, size, along) = match writer.scene.textures[id.0 as usize] {
+        Texture::Checker { a, b, size } => (a, b, size, None),
+        Texture::Stripes { a, b, width, along } => (a, b, width, Some(along)),
+        Texture::Noise { .. } => {
+            writer.refuse(origin, "has other noise", None);
+            return None;
+        }
+        Texture::Image { .. } => {
+            writer.refuse(origin, "lays pictures on surfaces otherwise", None);
+            return None;
+        }
+    };
+    writer.nearly(origin, "filters textures", "borders of cells are as wide as a pixel").then_some(())?;
+    let (a, b) = (painted(writer, primitive, "tex1", a)?, painted(writer, primitive, "tex2", b)?);
+    writer.textures += 1;
+    let own = format!("texture{}", writer.textures);
+    let world_from_texture = cells::world_from_texture(writer, primitive, DEPTH * size);
+    writer.put("AttributeBegin");
+    transform(writer, world_from_texture * DAffine3::from_scale(DVec3::splat(size)));
+    let mapping = match along {
+        None => "\"integer dimension\" 3".to_string(),
+        // The one coordinate counts layers, and the other is the same everywhere.
+        Some(along) => {
+            let along = numbers(along.to_array(), " ");
+            let planar = "\"string mapping\" \"planar\" \"float vdelta\" 0.5";
+            format!("{planar} \"vector3 v1\" [{along}] \"vector3 v2\" [0 0 0]")
+        }
+    };
+    writer.put(format!("Texture \"{own}\" \"spectrum\" \"checkerboard\" {mapping}\n  {a} {b}"));
+    writer.put("AttributeEnd");
+    Some(format!("\"texture {name}\" \"{own}\""))
 }
 
 fn shape(writer: &mut Writer, primitive: &Primitive) {

@@ -6,18 +6,20 @@
 //! glass: `indirect: false`.
 
 use super::triangles::Triangles;
-use super::{Writer, number, numbers, triangles};
+use super::{Writer, cells, number, numbers, triangles};
 use crate::color::Rgb;
 use crate::math::{DAffine3, DVec3, PI};
 use crate::scene::shape::{Form, Quadric};
-use crate::scene::{Light, Material, Primitive, Projection, Shape};
+use crate::scene::{Light, Material, Paint, Primitive, Projection, Shape, Texture};
 
 /// The distance up to which light does not fall off, in sizes of the scene.
 const NEAR: f64 = 1e-6;
 
-/// Why a texture is not written.
-const TEXTURES: &str =
-    "takes points on the border of two cells for the other one, and lays pictures otherwise";
+/// By how much of a cell it takes a point for one further on.
+const AHEAD: f64 = 1e-3;
+
+/// How far below the surface a solid texture is seen, in cells.
+const DEPTH: f64 = 1e-6;
 
 pub(super) fn write(writer: &mut Writer) {
     let scene = writer.scene;
@@ -144,54 +146,105 @@ fn cut(quadric: &Quadric) -> String {
 
 fn material(writer: &mut Writer, primitive: &Primitive) -> Option<String> {
     let origin = Some(primitive.origin);
-    Some(match writer.scene.material(primitive) {
-        Material::Diffuse { color } => {
-            let color = writer.plain(origin, *color, TEXTURES)?;
+    Some(match *writer.scene.material(primitive) {
+        Material::Diffuse { color } => painted(writer, primitive, color, &|color| {
             format!("pigment {{ {} }} finish {{ diffuse 1 }}", rgb(color))
-        }
-        Material::Mirror { color } => {
-            let color = writer.plain(origin, *color, TEXTURES)?;
+        })?,
+        Material::Mirror { color } => painted(writer, primitive, color, &|color| {
             format!("pigment {{ rgb 0 }} finish {{ reflection {{ {} }} }}", rgb(color))
-        }
+        })?,
         Material::Metal { color, alpha } => {
-            let color = writer.plain(origin, *color, TEXTURES)?;
-            if *alpha > 0.0 {
+            if alpha > 0.0 {
                 writer.nearly(origin, "has no rough metals", "they are polished").then_some(())?;
             }
             // From the first colour, head-on, to the second by the fifth power: Schlick's.
-            format!("pigment {{ rgb 0 }} finish {{ reflection {{ {}, rgb 1 falloff 5 }} }}", rgb(color))
+            painted(writer, primitive, color, &|color| {
+                format!("pigment {{ rgb 0 }} finish {{ reflection {{ {}, rgb 1 falloff 5 }} }}", rgb(color))
+            })?
         }
         Material::Plastic { color, ior, .. } => {
-            let color = writer.plain(origin, *color, TEXTURES)?;
             writer
                 .nearly(origin, "has other plastics", "the base is not darkened by its coat")
                 .then_some(())?;
             let coat = "reflection { 0, 1 fresnel on } conserve_energy";
-            let ior = number(*ior);
-            format!("pigment {{ {} }} finish {{ diffuse 1 {coat} }} interior {{ ior {ior} }}", rgb(color))
+            let base = painted(writer, primitive, color, &|color| {
+                format!("pigment {{ {} }} finish {{ diffuse 1 {coat} }}", rgb(color))
+            })?;
+            format!("{base} interior {{ ior {} }}", number(ior))
         }
         Material::Dielectric { ior, absorption, alpha } => {
-            if *absorption != Rgb::ZERO {
+            if absorption != Rgb::ZERO {
                 writer.nearly(origin, "has another absorption", "glass is clear").then_some(())?;
             }
-            if *alpha > 0.0 {
+            if alpha > 0.0 {
                 writer.nearly(origin, "has no frosted glass", "it is polished").then_some(())?;
             }
             let glass =
                 "pigment { rgbt <1, 1, 1, 1> } finish { reflection { 0, 1 fresnel on } conserve_energy }";
-            format!("{glass} interior {{ ior {} }}", number(*ior))
+            format!("{glass} interior {{ ior {} }}", number(ior))
         }
-        Material::Emitter { radiance, pattern: None } => {
+        Material::Emitter { radiance, pattern } => {
             writer
                 .nearly(origin, "has no light from glowing surfaces", "they are seen and give no light")
                 .then_some(())?;
-            format!("pigment {{ {} }} finish {{ emission 1 }} no_shadow", rgb(*radiance))
-        }
-        Material::Emitter { pattern: Some(_), .. } => {
-            writer.refuse(origin, TEXTURES, None);
-            return None;
+            let paint = pattern.map_or(Paint::Plain(Rgb::ONE), Paint::Texture);
+            let glowing = painted(writer, primitive, paint, &|color| {
+                format!("pigment {{ {} }} finish {{ emission 1 }}", rgb(radiance * color))
+            })?;
+            format!("{glowing} no_shadow")
         }
     })
+}
+
+/// A look that depends on a colour, or cells of such looks.
+fn painted(
+    writer: &mut Writer,
+    primitive: &Primitive,
+    paint: Paint,
+    look: &dyn Fn(Rgb) -> String,
+) -> Option<String> {
+    match paint {
+        Paint::Plain(color) => Some(look(color)),
+        Paint::Texture(_) => texture(writer, primitive, paint, look, DAffine3::IDENTITY),
+    }
+}
+
+/// A texture, in a space within those of the textures around it.
+fn texture(
+    writer: &mut Writer,
+    primitive: &Primitive,
+    paint: Paint,
+    look: &dyn Fn(Rgb) -> String,
+    world_from_around: DAffine3,
+) -> Option<String> {
+    let id = match paint {
+        Paint::Plain(color) => return Some(format!("texture {{ {} }}", look(color))),
+        Paint::Texture(id) => id,
+    };
+    let known = writer.scene.textures[id.0 as usize];
+    let (a, b) = match known {
+        Texture::Checker { a, b, .. } | Texture::Stripes { a, b, .. } => (a, b),
+        Texture::Noise { .. } => {
+            writer.refuse(Some(primitive.origin), "has other noise", None);
+            return None;
+        }
+        Texture::Image { .. } => {
+            writer.refuse(Some(primitive.origin), "lays pictures on surfaces otherwise", None);
+            return None;
+        }
+    };
+    if let Shape::Mesh(_) = primitive.shape {
+        let how = "a flat part on a border may show the wrong one of two cells";
+        writer
+            .nearly(Some(primitive.origin), "sees solid textures of a mesh at its surface", how)
+            .then_some(())?;
+    }
+    let cells = cells::world_from_cells(writer, primitive, &known, DEPTH)?;
+    let world_from_here = cells * DAffine3::from_translation(DVec3::splat(AHEAD));
+    let mut part = |paint| texture(writer, primitive, paint, look, world_from_here);
+    let (a, b) = (part(a)?, part(b)?);
+    let map = matrix(world_from_around.inverse() * world_from_here);
+    Some(format!("texture {{ checker {a} {b} {map} }}"))
 }
 
 fn rgb(color: Rgb) -> String {

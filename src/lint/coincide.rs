@@ -9,13 +9,14 @@
 //! nothing of meshes.
 
 use super::faces::{Flat, flats};
-use super::{Lint, MOST_PAIRS, errors};
-use crate::diagnostic::Code;
+use super::{Lint, MOST_PAIRS, MOST_PLACES, errors};
 use crate::math::{DMat3, DVec3, ln};
 use crate::scene::boxes::Boxes;
 use crate::scene::shape::{Bounds, Form};
-use crate::scene::{Primitive, Shape};
+use crate::scene::{OriginId, Primitive, Shape};
+use crate::span::Span;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 /// Cells in a unit of the rounded canonical forms.
@@ -27,13 +28,20 @@ pub(super) fn look(lint: &mut Lint) {
     let mut found = curved(&lint.scene.primitives);
     found.extend(flat(lint));
     found.sort_unstable();
+    // Boxes may share several faces.
+    found.dedup();
+    // A pair of places in the source is named once, however many pairs of surfaces it makes.
+    let mut pairs: BTreeMap<[Option<Span>; 2], ([OriginId; 2], usize)> = BTreeMap::new();
     for (later, earlier) in found {
-        let origin = |i: u32| lint.scene.primitives[i as usize].origin;
-        let (later, earlier) = (origin(later), origin(earlier));
-        if lint.is_new(Code::W0606, later) {
-            let diagnostic = errors::coincide(lint, later, earlier);
-            lint.report(diagnostic);
+        let origins = [later, earlier].map(|i| lint.scene.primitives[i as usize].origin);
+        let places = origins.map(|origin| lint.at(origin).map(|at| at.span));
+        if pairs.len() < MOST_PLACES || pairs.contains_key(&places) {
+            pairs.entry(places).or_insert((origins, 0)).1 += 1;
         }
+    }
+    for ([later, earlier], count) in pairs.into_values() {
+        let diagnostic = errors::coincide(lint, later, earlier, count);
+        lint.report(diagnostic);
     }
 }
 

@@ -52,8 +52,12 @@ pub(super) fn overlap(lint: &Lint, later: OriginId, earlier: OriginId) -> Diagno
     lint.label(diagnostic, earlier, "the other").help("draw them apart, or let one contain the other wholly")
 }
 
-pub(super) fn coincide(lint: &Lint, later: OriginId, earlier: OriginId) -> Diagnostic {
-    let message = "two surfaces lie in the same place";
+pub(super) fn coincide(lint: &Lint, later: OriginId, earlier: OriginId, count: usize) -> Diagnostic {
+    let message = match count {
+        1 => "two surfaces lie in the same place".to_string(),
+        2 => "two surfaces lie in the same place, and so does 1 more pair made here".to_string(),
+        _ => format!("two surfaces lie in the same place, and so do {} more pairs made here", count - 1),
+    };
     let diagnostic = lint.about(Code::W0606, message, later).at("which of the two is seen is left to chance");
     let help = "leave one of them out, or draw them apart by a little";
     lint.label(diagnostic, earlier, "the other").help(help)

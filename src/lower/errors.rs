@@ -62,7 +62,7 @@ pub(super) fn no_direction(field: &str, span: Span) -> Diagnostic {
 pub(super) fn flattened(span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0403, "this shape is flattened to nothing", span)
         .at("has no extent left")
-        .help("a `scale` of 0, or sizes too small or too far apart, leave no solid; use factors above 0")
+        .help("a `matrix` of vectors in one plane, or sizes too small or too far apart, leave no solid")
 }
 
 pub(super) fn height_between_sheets(least: f64, span: Span) -> Diagnostic {
@@ -93,9 +93,11 @@ pub(super) fn no_picture(written: &str, why: &str, span: Span) -> Diagnostic {
 }
 
 pub(super) fn no_mesh(written: &str, why: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0501, format!("`{written}` {why}"), span)
-        .at("not usable as a mesh")
-        .help("a mesh is a PLY or OBJ file with faces")
+    let help = match written.ends_with(".rt") {
+        true => "a mesh is a PLY or OBJ file with faces; a scene is taken in by `import \"file.rt\" as name`",
+        false => "a mesh is a PLY or OBJ file with faces",
+    };
+    Diagnostic::new(Code::E0501, format!("`{written}` {why}"), span).at("not usable as a mesh").help(help)
 }
 
 pub(super) fn too_many_triangles(most: usize, span: Span) -> Diagnostic {

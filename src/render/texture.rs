@@ -7,6 +7,7 @@ use crate::asset::Image;
 use crate::color::Rgb;
 use crate::math::{DVec2, DVec3, PI, atan2};
 use crate::scene::shape::{Form, Quadric};
+use crate::scene::texture::upright;
 use crate::scene::{Paint, Primitive, Scene, Shape, Texture, TextureId};
 
 /// By how much of its size a solid texture is seen below the surface, so that a face that lies on the border of two
@@ -101,12 +102,9 @@ fn around(quadric: &Quadric, canonical: DVec3, o: DVec3, size: DVec2) -> Place {
     Place { uv: DVec2::new(longitude(canonical), v), repeats_up }
 }
 
-/// On a flat face: upright seen from outside, a copy stands about the origin. Up in it is +y, or where the face
-/// looks up or down −z and +z, as on a map.
+/// On a flat face: upright, a copy stands about the origin.
 fn flat(o: DVec3, n: DVec3, size: DVec2) -> Place {
-    let level = n.x.abs().max(n.z.abs()) < 1e-9;
-    let up = if level { DVec3::new(0.0, 0.0, -n.y.signum()) } else { (DVec3::Y - n.y * n).normalize() };
-    let right = up.cross(n);
+    let (right, up) = upright(n);
     Place { uv: 0.5 + DVec2::new(o.dot(right), o.dot(up)) / size, repeats_up: true }
 }
 

@@ -75,6 +75,14 @@ pub enum Texture {
     },
 }
 
+/// How a picture lies on a flat face with this unit normal, in the space of the texture: to its right, and up. It is
+/// upright seen from outside; up in it is +y, or where the face looks up or down −z and +z, as on a map.
+pub fn upright(n: DVec3) -> (DVec3, DVec3) {
+    let level = n.x.abs().max(n.z.abs()) < 1e-9;
+    let up = if level { DVec3::new(0.0, 0.0, -n.y.signum()) } else { (DVec3::Y - n.y * n).normalize() };
+    (up.cross(n), up)
+}
+
 impl super::Scene {
     /// What a paint is on the mean: of a picture that of its pixels, of two colours halfway.
     pub fn mean(&self, paint: Paint) -> Rgb {

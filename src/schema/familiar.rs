@@ -48,7 +48,7 @@ fn placed(name: &str) -> Option<Familiar> {
         "color" | "colour" | "albedo" | "pigment" => {
             rewritten("material", "a colour belongs to a material: `material: diffuse { color: #d94f30 }`")
         }
-        "texture" | "finish" | "shader" | "bsdf" | "surface" => rewritten(
+        "texture" | "finish" | "shader" | "bsdf" | "surface" | "interior" => rewritten(
             "material",
             "`material` says what it is made of: `material: diffuse { color: #d94f30 }`",
         ),
@@ -210,6 +210,19 @@ pub fn kind(name: &str) -> Option<Familiar> {
         }
         "settings" | "image" | "film" | "output" | "global_settings" => {
             rewritten("render", "how the picture is made stands in `render`: `render { size: (1280, 720) }`")
+        }
+        "texture" | "pigment" | "finish" | "interior" => rewritten(
+            "diffuse",
+            "what a shape is made of is a material: `material: diffuse { color: #d94f30 }`",
+        ),
+        "triangle" | "polygon" | "smooth_triangle" | "quad" | "mesh2" => {
+            rewritten("mesh", "triangles come from a file: `mesh { file: \"shape.obj\" }`")
+        }
+        "torus" | "text" | "blob" | "prism" | "lathe" => {
+            rewritten("mesh", "there is no such shape; as triangles it is a `mesh { file: \"shape.obj\" }`")
+        }
+        "difference" | "intersection" | "merge" | "csg" => {
+            elsewhere("shapes are not cut out of each other; a `mesh` from a file may have any shape")
         }
         "union" | "object" | "node" | "scene" | "world" => {
             rewritten("group", "things are put together in a `group`")

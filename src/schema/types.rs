@@ -117,11 +117,13 @@ pub struct Range {
 
 impl Range {
     /// Whether it allows every value.
+    #[inline]
     pub fn is_any(self) -> bool {
         self.low == f64::NEG_INFINITY && self.high == f64::INFINITY
     }
 
     /// Whether a value is allowed.
+    #[inline]
     pub fn contains(self, value: f64) -> bool {
         (if self.above { value > self.low } else { value >= self.low }) && value <= self.high
     }

@@ -54,6 +54,18 @@ pub enum Entry {
     Broken(Broken),
 }
 
+impl Entry {
+    /// Where it begins.
+    pub fn start(&self) -> u32 {
+        match self {
+            Entry::Field(field) => field.name.span.start,
+            Entry::Statement(statement) => statement.span.start,
+            Entry::Rows(rows) => rows.span().start,
+            Entry::Broken(broken) => broken.span.start,
+        }
+    }
+}
+
 /// `name: value`
 #[derive(Clone, Debug)]
 pub struct Field {

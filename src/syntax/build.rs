@@ -1,4 +1,4 @@
-//! Items to entries of the tree: what the grammar found, and what is said of its slips.
+//! What the grammar found in an item to entries of the tree, and what is said of its slips.
 
 use super::ast::{
     Body, Broken, Comment, Construct, Entry, Expr, ExprKind, Field, Keyword, Name, Path, Prefix, Statement,
@@ -6,19 +6,16 @@ use super::ast::{
 };
 use super::cut::Item;
 use super::errors::{self, Sink, statements};
-use super::rows::Rows;
-use super::shapes::Shapes;
-use super::{MAX_DEPTH, docs, statement, value};
+use super::slips::{ends_invalid, spoil};
+use super::{docs, statement, value};
 use crate::span::{SourceId, Span};
-use pest::Parser;
 use pest::iterators::{Pair, Pairs};
 use smol_str::SmolStr;
-use std::borrow::Cow;
 use std::cell::{Cell, RefCell};
 
 #[derive(pest_derive::Parser)]
 #[grammar = "../grammar/rt.pest"]
-struct Grammar;
+pub(super) struct Grammar;
 
 /// What the grammar found.
 pub(super) type Node<'t> = Pair<'t, Rule>;
@@ -38,161 +35,19 @@ pub(super) struct Source<'t> {
     pub(super) text: &'t str,
     /// All of its comments, in order.
     pub(super) comments: &'t [Comment],
+    /// The deepest tree of an expression.
+    pub(super) depth: usize,
 }
 
-/// The entries of items.
-pub(super) fn items(source: Source, items: &[Item]) -> (Vec<Entry>, Sink) {
-    let mut entries = Vec::with_capacity(items.len());
-    let mut sink = Sink::new();
-    let mut shapes = Shapes::default();
-    let mut rows = Rows::default();
-    for item in items {
-        // An item with comments inside has places that its text alone does not tell.
-        let plain = matches!(item.text, Cow::Borrowed(_)) && !item.skipped && item.depth < DEEP;
-        let start = item.start as u32;
-        if plain && let Some((shape, literals)) = shapes.recall(&item.text) {
-            if shape.is_plain() && !docs::any(&source, item.start) {
-                rows.push(shape, &item.text, start, literals);
-                continue;
-            }
-            let mut copies = shape.copy(&item.text, start, literals);
-            copies.iter_mut().for_each(|entry| document(source, entry));
-            close(&mut rows, &mut entries);
-            entries.append(&mut copies);
-            continue;
-        }
-        close(&mut rows, &mut entries);
-        let (built, slips) = on_enough_stack(item, || entries_of(source, item));
-        if plain && slips.len() == 0 {
-            shapes.learn(&built, start);
-        }
-        entries.extend(built);
-        sink.append(slips);
-    }
-    close(&mut rows, &mut entries);
-    (entries, sink)
-}
-
-/// Ends a run of rows.
-fn close(rows: &mut Rows, entries: &mut Vec<Entry>) {
-    if !rows.is_empty() {
-        entries.push(std::mem::take(rows).finish());
-    }
-}
-
-/// Gives a copy of a statement its own doc.
-fn document(source: Source, entry: &mut Entry) {
-    if let Entry::Statement(statement) = entry {
-        let whole = statement.prefixes.first().map_or(statement.span, |prefix| prefix.span);
-        statement.doc = docs::of(&source, whole, statement.span);
-    }
-}
-
-/// The one expression that an item is.
-pub(super) fn value(source: Source, item: Option<&Item>) -> (Expr, Sink) {
-    match item {
-        Some(item) => on_enough_stack(item, || value_of(source, item)),
-        None => {
-            let mut sink = Sink::new();
-            let span = Span::new(source.id, 0, source.text.len());
-            sink.push(errors::missing_value("", span));
-            (Expr { kind: ExprKind::Invalid, span }, sink)
-        }
-    }
-}
-
-fn entries_of(source: Source, item: &Item) -> (Vec<Entry>, Sink) {
-    let builder = Builder::new(source, item);
-    let entries = if item.skipped {
-        vec![builder.unread()]
-    } else if let Ok(pairs) = Grammar::parse(Rule::item, &item.text) {
-        builder.entries(pairs, true).0
-    } else {
-        // The grammar takes any text; what it can lack is stack.
-        builder.report(errors::exhausted(builder.whole()));
-        vec![builder.unread()]
+/// Whether an entry is a value in angle brackets, as other languages have them, with or without a name before it.
+fn is_angled(pair: &Node) -> bool {
+    let text = match pair.as_rule() {
+        Rule::broken => pair.as_str(),
+        Rule::uncoloned => pair.as_str().trim_start_matches(|c: char| c.is_alphanumeric() || c == '_'),
+        _ => return false,
     };
-    (entries, builder.sink.into_inner())
-}
-
-fn value_of(source: Source, item: &Item) -> (Expr, Sink) {
-    let builder = Builder::new(source, item);
-    let mut expr = Expr { kind: ExprKind::Invalid, span: builder.whole() };
-    if !item.skipped {
-        match Grammar::parse(Rule::value, &item.text) {
-            Ok(pairs) => {
-                for pair in pairs {
-                    match pair.as_rule() {
-                        Rule::expr => expr = value::expression(&builder, pair).0,
-                        Rule::extra_all if matches!(expr.kind, ExprKind::Invalid) => {}
-                        Rule::extra_all => builder.unexpected(&pair, errors::unexpected_behind),
-                        _ => {}
-                    }
-                }
-            }
-            Err(_) => builder.report(errors::exhausted(builder.whole())),
-        }
-    }
-    (expr, builder.sink.into_inner())
-}
-
-/// From this nesting on an item gets a stack of its own.
-const DEEP: usize = 48;
-
-/// Enough for [`MAX_DEPTH`] brackets, each with all that the grammar can put between two of them.
-const DEEP_STACK: usize = 64 << 20;
-
-/// Runs `read`, on a larger stack if the item is nested deep: the caller's may be that of a worker thread.
-fn on_enough_stack<T: Send>(item: &Item, read: impl FnOnce() -> T + Send) -> T {
-    if item.depth < DEEP || item.skipped {
-        return read();
-    }
-    std::thread::scope(|scope| {
-        let thread = std::thread::Builder::new().stack_size(DEEP_STACK);
-        let handle = thread.spawn_scoped(scope, read).expect("the system has a thread to spare");
-        handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-    })
-}
-
-/// Whether a complaint about the end of an entry explains what follows on its line.
-fn ends_invalid(entry: &Entry) -> bool {
-    let invalid = |value: &Expr| matches!(value.kind, ExprKind::Invalid);
-    match entry {
-        Entry::Field(field) => invalid(&field.value),
-        Entry::Broken(_) | Entry::Rows(_) => false,
-        Entry::Statement(statement) => match &statement.kind {
-            StatementKind::Definition { value, .. } | StatementKind::Function { value, .. } => invalid(value),
-            StatementKind::Param { default, range, .. } => invalid(range.as_ref().unwrap_or(default)),
-            StatementKind::Assert { condition, message } => invalid(message.as_ref().unwrap_or(condition)),
-            // An empty span is that of a body which is missing.
-            StatementKind::Part { body, .. } | StatementKind::For { body, .. } => {
-                body.span.range().is_empty()
-            }
-            StatementKind::If { then, otherwise, .. } => {
-                otherwise.as_ref().unwrap_or(then).span.range().is_empty()
-            }
-            StatementKind::Import { name, .. } => name.span.range().is_empty(),
-            StatementKind::Thing { .. } => false,
-        },
-    }
-}
-
-/// Makes the value invalid with which an entry ends, because more stands behind it: what it was to be is not known.
-/// What stands in a body of its own is looked at all the same.
-fn spoil(entry: &mut Entry) {
-    let value = match entry {
-        Entry::Field(field) => &mut field.value,
-        Entry::Broken(_) | Entry::Rows(_) => return,
-        Entry::Statement(statement) => match &mut statement.kind {
-            StatementKind::Definition { value, .. } | StatementKind::Function { value, .. } => value,
-            StatementKind::Param { default, range, .. } => range.as_mut().unwrap_or(default),
-            StatementKind::Assert { condition, message } => message.as_mut().unwrap_or(condition),
-            _ => return,
-        },
-    };
-    if !matches!(value.kind, ExprKind::Construct(_)) {
-        value.kind = ExprKind::Invalid;
-    }
+    let inside = text.trim_ascii_start().strip_prefix('<').map(str::trim_ascii_start);
+    inside.is_some_and(|inside| inside.starts_with(|c: char| c.is_ascii_digit() || "-.(".contains(c)))
 }
 
 fn is_statement(rule: Rule) -> bool {
@@ -206,25 +61,45 @@ pub(super) struct Builder<'t> {
     text: &'t str,
     base: usize,
     continued: bool,
-    sink: RefCell<Sink>,
+    pub(super) sink: RefCell<Sink>,
     /// Whether the depth of an expression was complained of; once an item is enough.
     deep: Cell<bool>,
+    /// Where the body that is being read has a value in angle brackets in place of a field.
+    foreign: Cell<Option<Span>>,
+    /// Whether a body without braces was complained of; once an item is enough, as its `else` then has none either.
+    pub(super) unbraced: Cell<bool>,
 }
 
 impl<'t> Builder<'t> {
-    fn new(source: Source<'t>, item: &'t Item) -> Builder<'t> {
-        let (sink, deep) = (RefCell::new(Sink::new()), Cell::new(false));
-        Builder { source, text: &item.text, base: item.start, continued: item.continued, sink, deep }
+    pub(super) fn new(source: Source<'t>, item: &'t Item) -> Builder<'t> {
+        Builder {
+            source,
+            text: &item.text,
+            base: item.start,
+            continued: item.continued,
+            sink: RefCell::new(Sink::new()),
+            deep: Cell::new(false),
+            foreign: Cell::new(None),
+            unbraced: Cell::new(false),
+        }
     }
 
     pub(super) fn report(&self, diagnostic: crate::diagnostic::Diagnostic) {
         self.sink.borrow_mut().push(diagnostic);
     }
 
+    /// How much was reported.
+    pub(super) fn reported(&self) -> usize {
+        self.sink.borrow().len()
+    }
+
     // --- Places ---------------------------------------------------------------------------------------------
 
-    fn whole(&self) -> Span {
-        self.at(0, self.text.len())
+    pub(super) fn whole(&self) -> Span {
+        // An item that was not parsed may end within a character that was read as another.
+        let text = self.source.text;
+        let (start, end) = (self.base, self.base + self.text.len());
+        Span::new(self.source.id, text.floor_char_boundary(start), text.ceil_char_boundary(end))
     }
 
     /// The span of a range of the item.
@@ -254,6 +129,11 @@ impl<'t> Builder<'t> {
         self.text[..offset].trim_ascii_end()
     }
 
+    /// The text before an offset.
+    pub(super) fn all_before(&self, offset: usize) -> &'t str {
+        &self.text[..offset]
+    }
+
     /// Where the item begins in its file.
     pub(super) fn base(&self) -> usize {
         self.base
@@ -267,6 +147,11 @@ impl<'t> Builder<'t> {
     /// The text behind an offset.
     pub(super) fn after(&self, offset: usize) -> &'t str {
         &self.text[offset..]
+    }
+
+    /// How long the item is, in bytes.
+    pub(super) fn text_len(&self) -> usize {
+        self.text.len()
     }
 
     /// Whether the item ends with `;` and the line goes on.
@@ -292,16 +177,22 @@ impl<'t> Builder<'t> {
 
     /// Whether a tree of this depth is allowed; the first that is not is reported.
     pub(super) fn allows(&self, depth: usize, place: Span) -> bool {
-        if depth > MAX_DEPTH && !self.deep.replace(true) {
-            self.report(errors::deep_expression(place));
+        let most = self.source.depth;
+        if depth > most && !self.deep.replace(true) {
+            self.report(errors::deep_expression(place, most));
         }
-        depth <= MAX_DEPTH
+        depth <= most
     }
 
     // --- Entries --------------------------------------------------------------------------------------------
 
+    /// The deepest tree of an expression.
+    pub(super) fn most_depth(&self) -> usize {
+        self.source.depth
+    }
+
     /// An item that was not parsed. What it seems to define counts as given.
-    fn unread(&self) -> Entry {
+    pub(super) fn unread(&self) -> Entry {
         let mut words = self.text.split_ascii_whitespace();
         let _kind = words.next();
         let name = words.next().filter(|word| word.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_'));
@@ -313,7 +204,7 @@ impl<'t> Builder<'t> {
     }
 
     /// Entries, and the slips with which some of them end.
-    fn entries(&self, pairs: Pairs<'t, Rule>, top: bool) -> Deep<Vec<Entry>> {
+    pub(super) fn entries(&self, pairs: Pairs<'t, Rule>, top: bool) -> Deep<Vec<Entry>> {
         let (mut entries, mut deepest) = (vec![], 0);
         // Whether a complaint about the last entry, or about its value, explains what follows on its line.
         let (mut explained, mut explained_value) = (false, false);
@@ -325,7 +216,12 @@ impl<'t> Builder<'t> {
                 Rule::semicolon => self.semicolon(&pair),
                 Rule::crowded if explained => muted = Some(self.sink.borrow().len()),
                 Rule::crowded => self.crowded(&pair),
-                Rule::extra if explained || explained_value => {}
+                Rule::extra | Rule::decimal if explained || explained_value || self.unbraced.get() => {}
+                Rule::decimal => {
+                    if self.decimal(&pair) {
+                        entries.last_mut().into_iter().for_each(spoil);
+                    }
+                }
                 Rule::extra => {
                     self.unexpected(&pair, errors::unexpected_extra);
                     entries.last_mut().into_iter().for_each(spoil);
@@ -336,6 +232,9 @@ impl<'t> Builder<'t> {
                     let known = self.sink.borrow().len();
                     let start = pair.as_span().end() - pair.as_str().trim_ascii_start().len();
                     let end = pair.as_span().start() + pair.as_str().trim_ascii_end().len();
+                    if !top && is_angled(&pair) {
+                        self.foreign.set(self.foreign.get().or(Some(self.at(start, end))));
+                    }
                     let (entry, depth) = self.entry(pair, top);
                     let nameless = matches!(entry, Entry::Broken(Broken { name: None, .. }));
                     let again = lost.is_some_and(|lost| !self.text[lost..start].contains('\n'));
@@ -371,10 +270,7 @@ impl<'t> Builder<'t> {
         let mut inner = pair.into_inner();
         let first = inner.next().expect("every entry begins with a word");
         match rule {
-            Rule::field => {
-                let (value, depth) = self.expression(inner);
-                (Entry::Field(Field { name: self.name(&first), value }), depth)
-            }
+            Rule::field => self.field(&first, inner, span, top),
             Rule::thing => self.thing(&first, inner, span, top),
             Rule::definition => self.definition(&first, inner, span),
             Rule::equals => self.equals(&first, inner, span, top),
@@ -431,10 +327,10 @@ impl<'t> Builder<'t> {
             return (None, 0);
         };
         let name = self.name(&word);
-        let Some(arguments) = inner.next() else {
+        let Some(details) = inner.next() else {
             return (Some(Prefix { name, arguments: None, span }), 0);
         };
-        let (arguments, depth) = value::arguments(self, arguments);
+        let (arguments, depth) = value::arguments(self, details);
         (Some(Prefix { name, arguments: Some(arguments), span }), depth)
     }
 
@@ -445,16 +341,34 @@ impl<'t> Builder<'t> {
         (Body { entries, span }, depth + 1)
     }
 
-    /// `kind { … }`, without a limit on its depth. The kind is given by its names.
-    pub(super) fn construct(&self, mut kind: Vec<Name>, body: Node<'t>) -> Deep<Construct> {
+    /// `kind { … }`, without a limit on its depth. The kind is given by its names. None where the body is written as
+    /// in another language: that is one slip, whatever else it makes wrong.
+    pub(super) fn construct(&self, mut kind: Vec<Name>, body: Node<'t>) -> Deep<Option<Construct>> {
+        let (known, around) = (self.sink.borrow().len(), self.foreign.take());
         let (body, depth) = self.body(body);
+        if let Some(angled) = self.foreign.replace(around) {
+            self.sink.borrow_mut().truncate(known);
+            self.report(errors::foreign_body(&kind[0].text, kind[0].span, angled));
+            return (None, 0);
+        }
         let rest = kind.split_off(1);
         let first = kind.pop().expect("a kind has a name");
         for name in std::iter::once(&first).chain(&rest).filter(|name| is_reserved(&name.text)) {
             self.report(errors::reserved(&name.text, name.span));
         }
         let span = first.span.to(body.span);
-        (Construct { kind: Path { first, rest }, body, span }, depth)
+        (Some(Construct { kind: Path { first, rest }, body, span }), depth)
+    }
+
+    /// `kind { … }` as a value.
+    pub(super) fn made(&self, kind: Vec<Name>, body: Node<'t>, span: Span) -> Deep<Expr> {
+        match self.construct(kind, body) {
+            (Some(construct), depth) => {
+                let (span, kind) = (construct.span, ExprKind::Construct(Box::new(construct)));
+                (Expr { kind, span }, depth)
+            }
+            (None, depth) => (Expr { kind: ExprKind::Invalid, span }, depth),
+        }
     }
 
     fn thing(&self, path: &Node<'t>, mut inner: Pairs<'t, Rule>, span: Span, top: bool) -> Deep<Entry> {
@@ -469,8 +383,8 @@ impl<'t> Builder<'t> {
             return match name {
                 Some(name) if &word.text == "material" && !top && kind.len() == 1 => {
                     self.report(errors::missing_colon("material", word.span, name.span));
-                    let (construct, depth) = self.construct(vec![name], body);
-                    let value = Expr { span: construct.span, kind: ExprKind::Construct(Box::new(construct)) };
+                    let place = name.span;
+                    let (value, depth) = self.made(vec![name], body, place);
                     self.checked(Entry::Field(Field { name: word, value }), depth, span)
                 }
                 name => {
@@ -489,7 +403,9 @@ impl<'t> Builder<'t> {
                 }
             };
         }
-        let (construct, depth) = self.construct(kind, body);
+        let (Some(construct), depth) = self.construct(kind, body) else {
+            return (Entry::Broken(Broken { name, span }), 0);
+        };
         if let Some(name) = name.as_ref().filter(|name| is_reserved(&name.text)) {
             self.report(errors::reserved(&name.text, name.span));
         }

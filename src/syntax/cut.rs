@@ -9,8 +9,9 @@
 //! before a line that starts with a binary operator other than `-`, with a word that goes on with a statement such
 //! as `else`, with `.member` or with `{`.
 
-use super::MAX_DEPTH;
 mod brackets;
+mod habits;
+mod items;
 mod lines;
 #[cfg(test)]
 mod tests;
@@ -24,9 +25,9 @@ use std::ops::Range;
 /// Stands in place of text that was reported.
 pub(super) const BLOT: u8 = 1;
 
-/// The most operators between two separators. A chain longer than [`MAX_DEPTH`] is refused later with its
+/// The most operators between two separators. A chain longer than the limit of depth is refused later with its
 /// exact place; this bounds the memory that finding it takes.
-const MAX_OPERATORS: usize = 16 * MAX_DEPTH;
+const MAX_OPERATORS: usize = 8192;
 
 /// The most values between two parentheses.
 const MAX_VALUES: usize = 1_000_000;
@@ -43,6 +44,14 @@ pub(super) struct Cut<'t> {
     pub(super) comments: Vec<Comment>,
     /// What was wrong between the items and with their brackets.
     pub(super) sink: Sink,
+    /// Closers outside all brackets.
+    pub(super) strays: Vec<Stray>,
+}
+
+/// A closer without an opener, or a run of them.
+pub(super) struct Stray {
+    pub(super) span: Span,
+    pub(super) closer: char,
 }
 
 /// What stands between two separators outside all brackets.
@@ -59,14 +68,14 @@ pub(super) struct Item<'t> {
     pub(super) depth: usize,
 }
 
-/// Cuts a text into items.
-pub(super) fn cut(source: SourceId, text: &str) -> Cut<'_> {
-    Cutter::new(source, text, true).run()
+/// Cuts a text into items. Brackets are nested at most `most` deep.
+pub(super) fn cut(source: SourceId, text: &str, most: usize) -> Cut<'_> {
+    Cutter::new(source, text, true, most).run()
 }
 
 /// Takes a text as one item, whatever separates in it.
-pub(super) fn whole(source: SourceId, text: &str) -> Cut<'_> {
-    Cutter::new(source, text, false).run()
+pub(super) fn whole(source: SourceId, text: &str, most: usize) -> Cut<'_> {
+    Cutter::new(source, text, false, most).run()
 }
 
 /// What the last token was, as far as line ends and brackets care.
@@ -140,6 +149,8 @@ struct Cutter<'t> {
     bytes: &'t [u8],
     /// Whether separators outside brackets end an item.
     splits: bool,
+    /// The deepest nesting of brackets.
+    most: usize,
     out: Cut<'t>,
     at: usize,
     /// Column of the first token of this line.
@@ -169,16 +180,19 @@ struct Cutter<'t> {
     /// How many diagnostics and comments there were before the item.
     before_item: (usize, usize),
     ended_in_comment: bool,
+    /// Where comments begin as in other languages.
+    foreign_comments: Vec<Span>,
 }
 
 impl<'t> Cutter<'t> {
-    fn new(source: SourceId, text: &'t str, splits: bool) -> Cutter<'t> {
+    fn new(source: SourceId, text: &'t str, splits: bool, most: usize) -> Cutter<'t> {
         Cutter {
             source,
             text,
             bytes: text.as_bytes(),
             splits,
-            out: Cut { items: vec![], comments: vec![], sink: Sink::new() },
+            most,
+            out: Cut { items: vec![], comments: vec![], sink: Sink::new(), strays: vec![] },
             at: if text.starts_with('\u{feff}') { 3 } else { 0 },
             indent: 0,
             last: Last::Open,
@@ -197,6 +211,7 @@ impl<'t> Cutter<'t> {
             rescans: 0,
             before_item: (0, 0),
             ended_in_comment: false,
+            foreign_comments: vec![],
         }
     }
 
@@ -208,6 +223,7 @@ impl<'t> Cutter<'t> {
                 self.token(gap.first_newline.is_some());
             } else if self.levels.is_empty() || self.layout || self.ended_in_comment {
                 self.close_all(None);
+                self.report_foreign_comments();
                 return self.out;
             } else {
                 self.rescan();
@@ -238,7 +254,9 @@ impl<'t> Cutter<'t> {
         let byte = self.bytes[start];
         if self.levels.is_empty() && self.splits {
             match byte {
-                b',' if self.base.angled == 0 && !self.message_follows() => return self.comma(),
+                b',' if self.base.angled == 0 && !self.is_decimal_comma() && !self.message_follows() => {
+                    return self.comma();
+                }
                 b')' | b']' | b'}' => return self.stray_closer(),
                 _ => {}
             }
@@ -247,6 +265,7 @@ impl<'t> Cutter<'t> {
             self.begin(start);
         }
         self.last = match byte {
+            b'#' | b'-' if self.begins_foreign_comment() => self.foreign_comment(),
             b'(' | b'[' | b'{' => self.open(),
             b')' | b']' | b'}' => self.close(first_on_line),
             b'"' => self.string(),
@@ -338,10 +357,10 @@ impl<'t> Cutter<'t> {
         self.depth += 1;
         let within = |level: &Level| level.ifs + level.angled;
         let nested: usize = self.levels.iter().chain([&self.base]).map(within).sum();
-        if nested > MAX_DEPTH && !self.skipped {
+        if nested > self.most && !self.skipped {
             self.skipped = true;
             let place = self.span(self.at, self.at + 1);
-            self.out.sink.push(errors::deep_brackets(place));
+            self.out.sink.push(errors::deep_brackets(place, self.most));
         }
     }
 
@@ -411,85 +430,6 @@ impl<'t> Cutter<'t> {
         let run = self.bytes[self.at..].iter().take_while(|&&byte| byte == BLOT).count();
         self.out.sink.push(errors::control(self.span(self.at, self.at + run)));
         self.take(run, Last::Operand)
-    }
-
-    // --- Items ----------------------------------------------------------------------------------------------
-
-    fn begin(&mut self, start: usize) {
-        self.item = Some(start);
-        self.before_item = (self.out.sink.len(), self.out.comments.len());
-        let forgiven = self.base.forgiven;
-        self.base = Level { forgiven, ..Level::new(0, start, self.indent) };
-        self.end = start;
-        self.skipped = false;
-        self.asserts = false;
-        self.depth = 0;
-    }
-
-    /// Ends the item, with whatever brackets are open; the grammar takes the end of the text for their closers.
-    fn close_all(&mut self, seen: Option<Span>) {
-        self.report_unclosed(0, seen);
-        self.levels.clear();
-        (self.open, self.beyond) = ([0; 3], 0);
-        self.layout = self.rescans >= MAX_RESCANS;
-        self.finish();
-    }
-
-    /// Ends the item behind its last token.
-    fn finish(&mut self) {
-        let Some(start) = self.item.take() else { return };
-        let text = &self.text[start..self.end];
-        let text = if self.edits.is_empty() { Cow::Borrowed(text) } else { Cow::Owned(self.edited(start)) };
-        self.edits.clear();
-        self.out.items.push(Item {
-            start,
-            text,
-            skipped: self.skipped,
-            continued: self.continues(),
-            depth: self.depth,
-        });
-        self.last = Last::Open;
-        self.comma_allowed = true;
-        let forgiven = self.base.forgiven;
-        self.base = Level { forgiven, ..Level::new(0, 0, 0) };
-    }
-
-    /// Whether the item ends with `;` and the line goes on.
-    fn continues(&self) -> bool {
-        let rest = self.text[self.end..].trim_start_matches([' ', '\t', '\r']);
-        self.bytes[self.end - 1] == b';'
-            && !rest.is_empty()
-            && !rest.starts_with(['\n', ','])
-            && !rest.starts_with("//")
-    }
-
-    fn edited(&self, start: usize) -> String {
-        let mut bytes = self.bytes[start..self.end].to_vec();
-        for (range, byte) in &self.edits {
-            let end = range.end.min(self.end);
-            if range.start < end {
-                bytes[range.start - start..end - start].fill(*byte);
-            }
-        }
-        String::from_utf8(bytes).expect("edits cover whole characters")
-    }
-
-    fn blot(&mut self, start: usize, end: usize) {
-        self.edits.push((start..end, BLOT));
-    }
-
-    /// Reads the item once more, now with an eye on the layout, since its brackets do not match.
-    fn rescan(&mut self) {
-        let start = self.item.unwrap_or(self.at);
-        self.rescans += 1;
-        self.layout = true;
-        self.out.sink.truncate(self.before_item.0);
-        self.out.comments.truncate(self.before_item.1);
-        self.edits.clear();
-        self.levels.clear();
-        (self.open, self.beyond) = ([0; 3], 0);
-        (self.at, self.item, self.last) = (start, None, Last::Open);
-        self.indent = start - self.text[..start].rfind('\n').map_or(0, |newline| newline + 1);
     }
 }
 

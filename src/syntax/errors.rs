@@ -1,8 +1,14 @@
 //! What is said of each slip: one small function a diagnostic.
 
+mod habits;
+mod limits;
+mod literals;
 pub(super) mod statements;
 
-use super::MAX_DEPTH;
+pub(super) use habits::*;
+pub(super) use limits::*;
+pub(super) use literals::*;
+
 use crate::diagnostic::{Code, Diagnostic};
 use crate::span::Span;
 
@@ -34,6 +40,20 @@ impl Sink {
 
     pub(super) fn truncate(&mut self, length: usize) {
         self.0.truncate(length);
+    }
+
+    /// Adds a label to the one diagnostic that points into a place, if there is one.
+    pub(super) fn label(&mut self, within: Span, place: Span, text: &str) -> bool {
+        let found = self.0.iter_mut().find(|diagnostic| within.contains(diagnostic.primary.span));
+        let Some(diagnostic) = found else { return false };
+        *diagnostic =
+            std::mem::replace(diagnostic, Diagnostic::new(Code::E0001, "", place)).label(place, text);
+        true
+    }
+
+    /// Moves all that the diagnostics point at.
+    pub(super) fn move_places(&mut self, moved: impl Fn(Span) -> Span) {
+        self.0.iter_mut().for_each(|diagnostic| diagnostic.move_places(&moved));
     }
 
     /// What was collected, in the order of the text.
@@ -72,14 +92,12 @@ pub(super) fn unexpected_value(token: &str, span: Span) -> Diagnostic {
     match token {
         "]" => diagnostic.help("an index or the values of a list stand in brackets: `[0]`"),
         "{" => diagnostic.help("name the kind before the brace: `sphere { … }`"),
-        "'" | "“" | "”" | "‘" | "’" => {
+        "'" | "“" | "”" | "„" | "‘" | "’" => {
             diagnostic.help("text stands in straight double quotes: `\"text\"`")
         }
         "<" => diagnostic.help("values stand in parentheses: `(0, 1, 0)m`"),
-        "−" | "–" => diagnostic.help("a minus is written `-`").fix(span, "-"),
         "+" => diagnostic.help("a positive number has no sign").fix(span, ""),
         "!" => diagnostic.help("write `not`").fix(span, "not "),
-        "*" => diagnostic.help("write `pow(a, b)` for a power"),
         "=" => diagnostic.help("write one `=` or `:` and then the value"),
         _ => diagnostic.help("write a value such as `5cm`, `(0, 1, 0)m`, `#d94f30` or a name"),
     }
@@ -90,12 +108,13 @@ pub(super) fn unexpected_extra(token: &str, span: Span) -> Diagnostic {
     let diagnostic = unexpected(token, span).at("the entry should have ended before this");
     match token {
         "{" => diagnostic.help("only a kind is followed by a body: `sphere { … }` or `sphere ball { … }`"),
-        "&" => diagnostic.help("write `and`"),
         "°" => diagnostic.help("an angle is written `45deg`").fix(span, "deg"),
-        "|" => diagnostic.help("write `or`, or `|>` to pass a placement on"),
-        "^" => diagnostic.help("write `pow(a, b)`, or `a * a` for a square"),
-        "×" => diagnostic.help("times is written `*`").fix(span, "*"),
-        "÷" => diagnostic.help("divided by is written `/`").fix(span, "/"),
+        "|" => diagnostic.help("`|>` passes a placement on"),
+        "'" => diagnostic.help("feet are written `3ft`, and inches `3in`"),
+        "#" => diagnostic.help("a comment begins with `//`").fix(span, "//"),
+        "scale" | "turn" | "move" | "matrix" => {
+            diagnostic.help("placements are joined by `|>`").fix(span.before(), "|> ")
+        }
         "?" => diagnostic.help("a choice is written `if … then … else …`"),
         "if" => diagnostic.help("a choice is written `if … then … else …`"),
         "then" => diagnostic.help("`then` belongs to an `if` before it"),
@@ -135,6 +154,7 @@ pub(super) fn unexpected_entry(token: &str, span: Span, top: bool) -> Diagnostic
     };
     match token {
         "#" => diagnostic.help("a comment begins with `//`").fix(span, "//"),
+        "\"" => diagnostic.help("the name of a field has no quotes: `radius: 5cm`"),
         "<" if !top => diagnostic.help("every value stands behind its field's name: `at: (0, 1, 0)m`"),
         "-" => {
             diagnostic.help("a line goes on in the next one behind an operator: end the line above with `-`")
@@ -153,7 +173,8 @@ pub(super) fn stray_separator(span: Span, separator: &str) -> Diagnostic {
 
 /// A byte of the text that only programs write.
 pub(super) fn control(span: Span) -> Diagnostic {
-    unexpected("\u{1}", span).at("invisible").help("delete it").fix(span, "")
+    // What it stands in place of is not known.
+    unexpected("\u{1}", span).at("invisible").help("delete it")
 }
 
 /// What a word of the language does, for whoever meant it as a name.
@@ -401,106 +422,4 @@ pub(super) fn dots(dots: &str, span: Span, edit: Span) -> Diagnostic {
         .at("`to` is wanted")
         .help("write `a to b`, which includes both ends");
     if dots == "..<" { diagnostic } else { diagnostic.fix(edit, " to ") }
-}
-
-// --- E0008: malformed literals ----------------------------------------------------------------------------
-
-/// `1.2.3`, `1e`, `0x10`
-pub(super) fn bad_number(text: &str, span: Span) -> Diagnostic {
-    let diagnostic = Diagnostic::new(Code::E0008, format!("`{text}` is not a number"), span).at("malformed");
-    if let Some(digits) = text.strip_prefix('.') {
-        return diagnostic.help(format!("write `0.{digits}`")).fix(span.before(), "0");
-    }
-    if let Some(digits) = text.strip_suffix('.') {
-        return diagnostic.help(format!("write `{digits}`")).fix(span, digits);
-    }
-    let lower = text.to_ascii_lowercase();
-    if ["0x", "0b", "0o"].iter().any(|prefix| lower.starts_with(prefix)) {
-        return diagnostic.help("numbers are decimal; a colour is written `#d94f30`");
-    }
-    if text.contains('_') {
-        return diagnostic.help("`_` stands between two digits: `1_000`");
-    }
-    if lower.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.').starts_with('e') {
-        return diagnostic.help("digits follow the `e`: `1e-3`");
-    }
-    if text.matches('.').count() > 1 {
-        return diagnostic
-            .help("a number has one decimal point; several numbers stand in parentheses: `(1, 2, 3)`");
-    }
-    diagnostic.help("numbers are written `3`, `0.5` or `1e-3`")
-}
-
-/// `1e999`
-pub(super) fn huge_number(text: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0008, format!("`{text}` is too large a number"), span)
-        .at("beyond 1.8e308")
-        .help("write a smaller number")
-}
-
-/// `"\q"`
-pub(super) fn bad_escape(escape: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0008, format!("`{escape}` means nothing in a text"), span)
-        .at("unknown escape")
-        .help("write `\\\\` for a backslash; besides there are `\\\"`, `\\n` and `\\t`")
-}
-
-/// `#12345`
-pub(super) fn bad_color(text: &str, span: Span) -> Diagnostic {
-    let diagnostic = Diagnostic::new(Code::E0008, format!("`{text}` is not a colour"), span);
-    let digits = &text[1..];
-    if let Some(wrong) = digits.chars().find(|c| !c.is_ascii_hexdigit()) {
-        return diagnostic
-            .at(format!("`{wrong}` is not a hexadecimal digit"))
-            .help("the digits are 0 to 9 and a to f: `#d94f30`");
-    }
-    let count = match digits.len() {
-        0 => "no digits".to_string(),
-        1 => "1 digit".to_string(),
-        n => format!("{n} digits"),
-    };
-    let diagnostic = diagnostic.at(count);
-    match digits.len() {
-        4 | 8 => diagnostic.help("write three digits or six; a colour has no transparency"),
-        _ => diagnostic.help("write three digits or six: `#fff` or `#d94f30`"),
-    }
-}
-
-// --- E0406: limits ----------------------------------------------------------------------------------------
-
-/// Too many brackets inside each other.
-pub(super) fn deep_brackets(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0406, format!("brackets are nested more than {MAX_DEPTH} deep"), span)
-        .at("one too many")
-        .help("name the inner parts by `let`")
-}
-
-/// Too deep an expression.
-pub(super) fn deep_expression(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0406, format!("the expression is more than {MAX_DEPTH} operations deep"), span)
-        .at("one too many")
-        .help("name its parts by `let`")
-}
-
-/// Far too many operators.
-pub(super) fn long_expression(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0406, "the expression has too many operators", span)
-        .at("one too many")
-        .help("name its parts by `let`")
-}
-
-/// Too many values in parentheses.
-pub(super) fn many_values(span: Span, limit: usize) -> Diagnostic {
-    Diagnostic::new(Code::E0406, format!("more than {limit} values in parentheses"), span).at("one too many")
-}
-
-/// Too long a text.
-pub(super) fn long_source(span: Span, mebibytes: usize) -> Diagnostic {
-    Diagnostic::new(Code::E0406, format!("the source is longer than {mebibytes} MiB"), span)
-        .at("where it is over the limit")
-}
-
-/// Nested so deep that the grammar gave up.
-pub(super) fn exhausted(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0406, "this is nested too deep to be read", span).at("skipped")
 }

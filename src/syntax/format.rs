@@ -9,9 +9,10 @@ mod doc;
 mod print;
 
 use super::ast::{Body, File};
-use super::{cut, parse};
+use super::errors::Sink;
+use super::{Limits, cut, lookalikes, parse};
 use crate::diagnostic::Diagnostic;
-use crate::span::SourceId;
+use crate::span::{SourceId, Span};
 use print::{Printer, Unit};
 use std::ops::Range;
 
@@ -58,16 +59,25 @@ fn broken(file: &File, text: &str, slips: &[Diagnostic]) -> Vec<Range<usize>> {
     if slips.is_empty() {
         return vec![];
     }
-    let items: Vec<Range<usize>> = cut::cut(file.source, text)
+    let written = lookalikes::read(file.source, text, &mut Sink::new());
+    let items: Vec<Range<usize>> = cut::cut(file.source, &written.text, Limits::default().depth)
         .items
         .iter()
-        .map(|item| item.start..item.start + item.text.len())
+        .map(|item| {
+            text.floor_char_boundary(item.start)..text.ceil_char_boundary(item.start + item.text.len())
+        })
         .collect();
     let mut ranges: Vec<Range<usize>> = vec![];
+    // What a mend would change is part of the slip.
+    let edits =
+        |slip: &Diagnostic| slip.fix.iter().flat_map(|fix| &fix.edits).map(|(span, _)| *span).collect();
     let mut places: Vec<Range<usize>> = slips
         .iter()
-        .flat_map(|slip| slip.labels.iter().chain([&slip.primary]))
-        .map(|label| label.span.range())
+        .flat_map(|slip| {
+            let edits: Vec<Span> = edits(slip);
+            slip.labels.iter().chain([&slip.primary]).map(|label| label.span).chain(edits)
+        })
+        .map(Span::range)
         .collect();
     places.sort_by_key(|place| place.start);
     for place in places {

@@ -2,7 +2,7 @@
 //!
 //! Parsing never fails: it returns a tree and what was wrong. Top-level items stand alone: `cut` finds
 //! them in one pass, each is then parsed by the grammar in `grammar/rt.pest` and turned into [`ast`] by
-//! `build`, `statement` and `value`, a large text's items in parallel. `shapes` knows an item that
+//! `items`, `build`, `statement` and `value`, a large text's items in parallel. `shapes` knows an item that
 //! differs from an earlier one in its literals only, `rows` keeps it as its literals. What is said of slips is in `errors`.
 //! `format` goes the other way.
 
@@ -12,6 +12,8 @@ mod cut;
 mod docs;
 mod errors;
 mod format;
+mod items;
+mod lookalikes;
 mod places;
 mod rows;
 mod shapes;
@@ -32,11 +34,26 @@ pub const RESERVED: &[&str] = &[
     "if", "then", "else", "fn", "to", "assert",
 ];
 
-/// The deepest nesting of brackets, and the deepest tree of an expression.
-pub const MAX_DEPTH: usize = 512;
+/// How much a text may ask for. Going over one is an error at the place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// The longest source, in bytes.
+    pub source: usize,
+    /// The deepest nesting of brackets, and the deepest tree of an expression; at most [`MAX_DEPTH`].
+    pub depth: usize,
+}
 
-/// The longest source in bytes.
-pub const MAX_SOURCE: usize = 256 << 20;
+impl Default for Limits {
+    fn default() -> Limits {
+        Limits { source: 256 << 20, depth: 512 }
+    }
+}
+
+/// The greatest depth that a limit can be set to: it takes stack.
+pub const MAX_DEPTH: usize = 4096;
+
+/// The longest source that places can count.
+pub const MAX_SOURCE: usize = 4095 << 20;
 
 /// From this length on a text's items are parsed in parallel.
 const PARALLEL: usize = 1 << 20;
@@ -47,44 +64,72 @@ const CHUNK: usize = 1 << 14;
 /// Reads a source. The tree holds all that could be understood; every slip is among the diagnostics, which
 /// are in the order of the text.
 pub fn parse(source: SourceId, text: &str) -> (ast::File, Vec<Diagnostic>) {
-    let (mut file, slips) = parse_rows(source, text);
+    let (mut file, slips) = parse_rows(source, text, Limits::default());
     file.body.entries = rows::written_out(file.body.entries, text);
     (file, slips)
 }
 
 /// The same, with things that differ from an earlier one in their literals only as [`Rows`].
-pub fn parse_rows(source: SourceId, text: &str) -> (ast::File, Vec<Diagnostic>) {
-    let span = Span::new(source, 0, text.len().min(MAX_SOURCE));
-    if text.len() > MAX_SOURCE {
+pub fn parse_rows(source: SourceId, text: &str, limits: Limits) -> (ast::File, Vec<Diagnostic>) {
+    let span = Span::new(source, 0, text.len().min(limits.source));
+    if text.len() > limits.source {
         let body = ast::Body { entries: vec![], span };
         let file = ast::File { source, body, comments: vec![] };
-        return (file, vec![errors::long_source(span.after(), MAX_SOURCE >> 20)]);
+        return (file, vec![errors::long_source(span.after(), limits.source)]);
     }
-    let cut = cut::cut(source, text);
-    let mut sink = cut.sink;
-    let found = build::Source { id: source, text, comments: &cut.comments };
+    let mut sink = errors::Sink::new();
+    let read = lookalikes::read(source, text, &mut sink);
+    let mut cut = cut::cut(source, &read.text, limits.depth);
+    read.skip(&mut cut);
+    sink.append(cut.sink);
+    let found = build::Source { id: source, text, comments: &cut.comments, depth: limits.depth };
     let mut entries = Vec::with_capacity(cut.items.len());
     let mut collect = |(built, slips)| {
         entries.extend::<Vec<ast::Entry>>(built);
         sink.append(slips);
     };
     if text.len() < PARALLEL {
-        collect(build::items(found, &cut.items));
+        collect(items::items(found, &cut.items));
     } else {
-        let built: Vec<_> = cut.items.par_chunks(CHUNK).map(|chunk| build::items(found, chunk)).collect();
+        let built: Vec<_> = cut.items.par_chunks(CHUNK).map(|chunk| items::items(found, chunk)).collect();
         built.into_iter().for_each(collect);
     }
+    strays(&entries, &cut.strays, &mut sink);
+    sink.move_places(|place| read.whole(place, text));
     let file = ast::File { source, body: ast::Body { entries, span }, comments: cut.comments };
     (file, sink.into_sorted())
 }
 
+/// Reports closers without an opener. Behind a thing whose `{` is missing, that is the slip.
+fn strays(entries: &[ast::Entry], strays: &[cut::Stray], sink: &mut errors::Sink) {
+    for stray in strays {
+        let place = stray.span.start;
+        let before = entries.partition_point(|entry| entry.start() < place);
+        let lost = entries[..before].iter().rev().find(|entry| !matches!(entry, ast::Entry::Field(_)));
+        let explained = match lost {
+            Some(ast::Entry::Broken(broken)) if stray.closer == '}' && broken.name.is_some() => {
+                sink.label(broken.span, stray.span, "closes what was not opened")
+            }
+            _ => false,
+        };
+        if !explained {
+            sink.push(errors::stray_closer(stray.span, stray.closer));
+        }
+    }
+}
+
 /// Reads a text that is one expression, such as a default value or a setting from the command line.
 pub fn parse_expression(source: SourceId, text: &str) -> (ast::Expr, Vec<Diagnostic>) {
-    let text = &text[..text.floor_char_boundary(MAX_SOURCE)];
-    let cut = cut::whole(source, text);
-    let mut sink = cut.sink;
-    let found = build::Source { id: source, text, comments: &cut.comments };
-    let (expr, slips) = build::value(found, cut.items.first());
+    let Limits { source: longest, depth } = Limits::default();
+    let mut sink = errors::Sink::new();
+    let text = &text[..text.floor_char_boundary(longest)];
+    let read = lookalikes::read(source, text, &mut sink);
+    let mut cut = cut::whole(source, &read.text, depth);
+    read.skip(&mut cut);
+    sink.append(cut.sink);
+    let found = build::Source { id: source, text, comments: &cut.comments, depth };
+    let (expr, slips) = items::value(found, cut.items.first());
     sink.append(slips);
+    sink.move_places(|place| read.whole(place, text));
     (expr, sink.into_sorted())
 }

@@ -131,15 +131,16 @@ fn is_word(byte: u8) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::build::{Source, items};
+    use super::super::build::Source;
     use super::super::cut::cut;
+    use super::super::items::items;
     use crate::span::SourceId;
     use proptest::prelude::*;
 
     /// All items together give what each gives by itself.
     fn check(text: &str) {
-        let cut = cut(SourceId(0), text);
-        let source = Source { id: SourceId(0), text, comments: &cut.comments };
+        let cut = cut(SourceId(0), text, 512);
+        let source = Source { id: SourceId(0), text, comments: &cut.comments, depth: 512 };
         let (together, _) = items(source, &cut.items);
         let together = crate::syntax::rows::written_out(together, text);
         let alone: Vec<_> =

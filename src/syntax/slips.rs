@@ -1,13 +1,119 @@
 //! Entries with a slip in their form: what is said of them, and what is still understood.
 
-use super::ast::{Broken, Entry, Field};
+use super::ast::{Broken, Entry, Expr, ExprKind, Field, Name, StatementKind};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements};
 use super::value;
 use crate::span::Span;
-use pest::iterators::Pairs;
+use pest::iterators::{Pair, Pairs};
+
+/// Whether a complaint about the end of an entry explains what follows on its line.
+pub(super) fn ends_invalid(entry: &Entry) -> bool {
+    let invalid = |value: &Expr| matches!(value.kind, ExprKind::Invalid);
+    match entry {
+        Entry::Field(field) => invalid(&field.value),
+        Entry::Broken(_) | Entry::Rows(_) => false,
+        Entry::Statement(statement) => match &statement.kind {
+            StatementKind::Definition { value, .. } | StatementKind::Function { value, .. } => invalid(value),
+            StatementKind::Param { default, range, .. } => invalid(range.as_ref().unwrap_or(default)),
+            StatementKind::Assert { condition, message } => invalid(message.as_ref().unwrap_or(condition)),
+            // An empty span is that of a body which is missing.
+            StatementKind::Part { body, .. } | StatementKind::For { body, .. } => {
+                body.span.range().is_empty()
+            }
+            StatementKind::If { then, otherwise, .. } => {
+                otherwise.as_ref().unwrap_or(then).span.range().is_empty()
+            }
+            StatementKind::Import { name, .. } => name.span.range().is_empty(),
+            StatementKind::Thing { .. } => false,
+        },
+    }
+}
+
+/// Makes the value invalid with which an entry ends, because more stands behind it: what it was to be is not known.
+/// What stands in a body of its own is looked at all the same.
+pub(super) fn spoil(entry: &mut Entry) {
+    let value = match entry {
+        Entry::Field(field) => &mut field.value,
+        Entry::Broken(_) | Entry::Rows(_) => return,
+        Entry::Statement(statement) => match &mut statement.kind {
+            StatementKind::Definition { value, .. } | StatementKind::Function { value, .. } => value,
+            StatementKind::Param { default, range, .. } => range.as_mut().unwrap_or(default),
+            StatementKind::Assert { condition, message } => message.as_mut().unwrap_or(condition),
+            _ => return,
+        },
+    };
+    if !matches!(value.kind, ExprKind::Construct(_)) {
+        value.kind = ExprKind::Invalid;
+    }
+}
 
 impl<'t> Builder<'t> {
+    /// `radius: 5cm`, or a slip of that form.
+    pub(super) fn field(
+        &self,
+        word: &Node,
+        mut inner: Pairs<'t, Rule>,
+        span: Span,
+        top: bool,
+    ) -> Deep<Entry> {
+        let name = self.name(word);
+        let lost = |name| (Entry::Broken(Broken { name, span }), 0);
+        let value = inner.next().expect("a field has a value");
+        if is_reserved(&name.text) && &name.text != "material" {
+            // The `else:` of an `if …:` was explained there.
+            if !self.unbraced.get() || &name.text != "else" {
+                self.report(statements::begins_nothing(&name.text, name.span));
+            }
+            return lost(None);
+        }
+        let only = value.clone().into_inner().next().filter(|_| top).map(|only| only.as_rule());
+        match only {
+            Some(Rule::bare_body) => return self.signed_body(name, ":", value, span),
+            Some(Rule::absent) => {
+                self.report(errors::missing_body(&name.text, name.span));
+                return lost(Some(name));
+            }
+            _ => {}
+        }
+        let (value, depth) = value::expression(self, value);
+        (Entry::Field(Field { name, value }), depth)
+    }
+
+    /// `sphere: { radius: 1m }`, `sphere = { radius: 1m }` at the top level.
+    fn signed_body(&self, kind: Name, sign: &str, value: Node<'t>, span: Span) -> Deep<Entry> {
+        let opener = self.span(&value).before();
+        let edit = Span { start: kind.span.end, ..opener };
+        self.report(errors::sign_before_body(&kind.text, sign, edit));
+        let bodies = value.into_inner().flat_map(Pair::into_inner);
+        let Some(body) = bodies.last() else { return (Entry::Broken(Broken { name: None, span }), 0) };
+        match self.construct(vec![kind], body) {
+            (Some(construct), depth) => {
+                let thing = StatementKind::Thing { name: None, construct };
+                self.checked(self.plain(thing, span), depth, span)
+            }
+            (None, depth) => (Entry::Broken(Broken { name: None, span }), depth),
+        }
+    }
+
+    /// `1,5m`. Whether it is a number with a decimal comma; else the value behind the comma belongs to nothing.
+    pub(super) fn decimal(&self, pair: &Node) -> bool {
+        let comma = pair.as_span().start();
+        let is_digit = |c: char| c.is_ascii_digit() || c == '_';
+        let whole = self.all_before(comma);
+        let digits = whole.len() - whole.trim_end_matches(is_digit).len();
+        let number = errors::first_token(&pair.as_str()[1..]);
+        if digits == 0 || whole[..whole.len() - digits].ends_with('.') {
+            let place = self.at(comma + 1, comma + 1 + number.len());
+            self.report(errors::unexpected_entry(number, place, false));
+            return false;
+        }
+        let place = self.at(comma - digits, comma + 1 + number.len());
+        let edit = self.at(comma, comma + 1);
+        self.report(errors::decimal_comma(&whole[whole.len() - digits..], number, place, edit));
+        true
+    }
+
     /// `radius = 5cm`
     pub(super) fn equals(
         &self,
@@ -18,7 +124,12 @@ impl<'t> Builder<'t> {
     ) -> Deep<Entry> {
         let name = self.name(word);
         let sign = inner.next().expect("this slip is about `=`");
-        let (value, depth) = self.expression(inner);
+        let value = inner.next().expect("this slip has a value");
+        let only = value.clone().into_inner().next().map(|only| only.as_rule());
+        if top && only == Some(Rule::bare_body) && !is_reserved(&name.text) {
+            return self.signed_body(name, "=", value, span);
+        }
+        let (value, depth) = value::expression(self, value);
         if word.as_str() == "let" || (top && word.as_str() == "material") {
             self.report(errors::missing_name(word.as_str(), name.span));
             return (Entry::Broken(Broken { name: None, span }), 0);
@@ -57,11 +168,17 @@ impl<'t> Builder<'t> {
         let field = &name.text == "material" && !top;
         if is_reserved(&name.text) && !field {
             self.report(statements::begins_nothing(&name.text, name.span));
+        } else if !top && is_placement(&name.text) && value.as_str().starts_with('(') {
+            self.report(errors::placement_alone(&name.text, name.span.to(value_span)));
         } else if !top {
             self.report(errors::missing_colon(&name.text, name.span, value_span));
             let (value, depth) = value::expression(self, value);
             return (Entry::Field(Field { name, value }), depth);
-        } else if value.as_str().trim_end().bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') {
+        } else if let Some(defined) = self.otherwise_written(&name, &value, value_span) {
+            return (Entry::Broken(Broken { name: defined, span }), 0);
+        } else if is_word(value.as_str().trim_end())
+            && !self.after(value.as_span().end()).trim_ascii_start().starts_with(':')
+        {
             self.report(errors::missing_body(self.before(value.as_span().end()), value_span));
         } else {
             self.report(errors::no_brace(&name.text, name.span, value_span));
@@ -69,14 +186,25 @@ impl<'t> Builder<'t> {
         (Entry::Broken(Broken { name: Some(name), span }), 0)
     }
 
+    /// A statement as other languages have it. Gives what it declares.
+    fn otherwise_written(&self, word: &Name, value: &Node, place: Span) -> Option<Option<Name>> {
+        let diagnostic = errors::habit(&word.text, word.span)?;
+        self.report(diagnostic);
+        let text = errors::first_token(value.as_str());
+        let place = Span { end: place.start + text.len() as u32, ..place };
+        Some(is_word(text).then(|| Name { text: text.into(), span: place }))
+    }
+
     /// `radius`
     pub(super) fn lone(&self, word: &Node, span: Span, top: bool) -> Entry {
         let name = self.name(word);
+        let word_end = word.as_span().end();
         self.report(match name.text.as_str() {
             keyword @ ("let" | "material") if top || keyword == "let" => {
                 errors::missing_name(keyword, name.span)
             }
             word if is_reserved(word) && word != "material" => statements::begins_nothing(word, name.span),
+            word if top && errors::changes(self.after(word_end)) => errors::changed(word, name.span),
             word if top => errors::missing_body(word, name.span),
             word => errors::lone_name(word, name.span),
         });
@@ -107,4 +235,14 @@ impl<'t> Builder<'t> {
             sign => self.report(errors::stray_separator(span, sign)),
         }
     }
+}
+
+/// Whether a text is one word.
+fn is_word(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
+}
+
+/// Whether a word makes a placement.
+fn is_placement(word: &str) -> bool {
+    matches!(word, "scale" | "turn" | "move" | "matrix" | "rotate" | "translate")
 }

@@ -26,6 +26,9 @@ pub(super) fn statement<'t>(builder: &Builder<'t>, pair: Node<'t>) -> Deep<Entry
     if rule != Rule::unfinished && parts.peek().is_some_and(|part| is_word(part.as_rule())) {
         parts.next();
     }
+    if rule == Rule::import && parts.peek().is_some_and(|path| path.as_rule() == Rule::bare_path) {
+        return (unquoted(builder, parts, span), 0);
+    }
     let (kind, depth) = match rule {
         Rule::param => param(builder, parts, span),
         Rule::part => part(builder, parts, span),
@@ -130,28 +133,35 @@ fn part<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> De
 fn import<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> Deep<StatementKind> {
     let written = parts.next().expect("an import has a path");
     let place = builder.trimmed(&written);
-    let quoted = written.as_rule() == Rule::text;
-    let text = match quoted {
-        true => value::text(builder, &written),
-        false => SmolStr::new(written.as_str().trim_ascii_end()),
-    };
-    if !quoted && !text.contains('\u{1}') {
-        builder.report(slips::bare_path(&text, place));
-    }
-    let path = Name { text, span: place };
+    let path = Name { text: value::text(builder, &written), span: place };
     let name = match (parts.next(), parts.next()) {
         (Some(_), Some(name)) => declared(builder, Some(name)),
         (given, _) => {
             match given {
                 Some(_) => builder.report(slips::missing_import_name(span.after())),
-                None if quoted => builder.report(slips::missing_as(stem(&path.text), place.after())),
-                None => {}
+                None => builder.report(slips::missing_as(stem(&path.text), place.after())),
             }
             let name = stem(&path.text).unwrap_or("");
             Name { text: SmolStr::new(name), span: place.after() }
         }
     };
     (StatementKind::Import { path, name }, 1)
+}
+
+/// `import lantern as l`: which file is meant is not certain, so none is read.
+fn unquoted<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> Entry {
+    let written = parts.next().expect("an import has a path");
+    let place = builder.trimmed(&written);
+    let path = written.as_str().trim_ascii_end();
+    if !path.contains('\u{1}') {
+        builder.report(slips::bare_path(path, place));
+    }
+    let named = parts.find(|part| part.as_rule() == Rule::word).map(|name| declared(builder, Some(name)));
+    let name = named.or_else(|| {
+        let word = path.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') && !is_reserved(path);
+        word.then(|| Name { text: SmolStr::new(path), span: place })
+    });
+    Entry::Broken(Broken { name, span })
 }
 
 /// What a file is called, if that can be a name.
@@ -172,14 +182,15 @@ fn function<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Span) -> De
     let mut place = name.span;
     let mut parameters = vec![];
     // One complaint about the head is enough.
-    let mut complete = true;
+    let mut complete = false;
     match parts.next_if(|part| part.as_rule() == Rule::parameters) {
         Some(pair) => {
             place = builder.trimmed(&pair);
+            let known = builder.reported();
             parameters = self::parameters(builder, pair);
+            complete = builder.reported() == known;
         }
         None => {
-            complete = false;
             builder.report(slips::missing_parameters(place.after()));
         }
     }
@@ -316,10 +327,22 @@ fn block<'t>(
     span: Span,
 ) -> Deep<Body> {
     let known = !matches!(head.kind, ExprKind::Invalid);
-    if let Some(before) = parts.next_if(|part| part.as_rule() == Rule::before_body)
-        && known
-    {
-        builder.unexpected(&before, slips::before_block);
+    if let Some(before) = parts.next_if(|part| part.as_rule() == Rule::before_body) {
+        let text = before.as_str().trim_ascii();
+        if text.len() > 1 && text.starts_with(':') {
+            // The braces that follow are those of something within.
+            drop(parts.next());
+            let start = before.as_span().start();
+            return unbraced(builder, word, builder.at(start, start + 1), span);
+        }
+        if known {
+            builder.unexpected(&before, slips::before_block);
+        }
+    }
+    let colon = builder.after((head.span.range().end).saturating_sub(builder.base())).trim_ascii_start();
+    if parts.peek().is_none() && colon.starts_with(':') && known {
+        let start = builder.base() + builder.text_len() - colon.len();
+        return unbraced(builder, word, Span::new(span.source, start, start + 1), span);
     }
     match parts.next_if(|part| part.as_rule() == Rule::body) {
         Some(body) => builder.body(body),
@@ -331,6 +354,14 @@ fn block<'t>(
             (empty(Span { end: span.end.max(place.start), ..place }.after()), 0)
         }
     }
+}
+
+/// A body without braces, as in Python. What belongs to it is not known, nor to its `else`: that is one slip.
+fn unbraced(builder: &Builder, word: &str, colon: Span, span: Span) -> Deep<Body> {
+    if !builder.unbraced.replace(true) {
+        builder.report(errors::unbraced(word, colon));
+    }
+    (empty(span.after()), 0)
 }
 
 /// `head { … } else …`
@@ -357,7 +388,9 @@ fn otherwise<'t>(builder: &Builder<'t>, pair: Node<'t>) -> Deep<Body> {
     let word = parts.next().expect("the other choice begins with a word");
     let place = builder.span(&word);
     if word.as_rule() == Rule::elif {
-        builder.report(slips::else_if(word.as_str(), place));
+        if !builder.unbraced.get() {
+            builder.report(slips::else_if(word.as_str(), place));
+        }
         let span = parts.clone().last().map_or(place, |last| place.to(builder.trimmed(&last)));
         let (kind, depth) = choice(builder, parts, span);
         return chained(builder, kind, depth, span);
@@ -372,7 +405,9 @@ fn otherwise<'t>(builder: &Builder<'t>, pair: Node<'t>) -> Deep<Body> {
             chained(builder, kind, depth, span)
         }
         None => {
-            builder.report(slips::missing_else_block(place));
+            if !builder.unbraced.get() {
+                builder.report(slips::missing_else_block(place));
+            }
             (empty(place.after()), 0)
         }
     }

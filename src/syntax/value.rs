@@ -1,6 +1,5 @@
 //! Expressions: the flat list that the grammar gives becomes a tree by precedence.
 
-use super::MAX_DEPTH;
 use super::ast::{Argument, BinaryOp, Expr, ExprKind, Name, Path, UnaryOp};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements};
@@ -14,14 +13,15 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
     let left = |rule| Op::infix(rule, Assoc::Left);
     PrattParser::new()
         .op(left(Rule::pipe))
-        .op(left(Rule::or))
-        .op(left(Rule::and))
+        .op(left(Rule::or) | left(Rule::foreign_or))
+        .op(left(Rule::and) | left(Rule::foreign_and))
         .op(Op::prefix(Rule::not))
-        .op(left(Rule::compare))
+        .op(left(Rule::compare) | left(Rule::foreign_equals))
         .op(left(Rule::to) | left(Rule::dots))
         .op(left(Rule::sum))
-        .op(left(Rule::product))
+        .op(left(Rule::product) | left(Rule::foreign_product))
         .op(Op::prefix(Rule::negate))
+        .op(left(Rule::foreign_power))
         .op(Op::postfix(Rule::member) | Op::postfix(Rule::index))
 });
 
@@ -52,7 +52,7 @@ pub(super) fn expression(builder: &Builder, pair: Node) -> Deep<Expr> {
         }
         last = Some(pair.as_rule());
         row = if matches!(pair.as_rule(), Rule::negate | Rule::not) { row + 1 } else { 0 };
-        if row >= MAX_DEPTH {
+        if row >= builder.most_depth() {
             builder.allows(row + 1, builder.span(&pair));
             return invalid(span);
         }
@@ -110,7 +110,15 @@ fn infix(builder: &Builder, left: Deep<Expr>, operator: &Node, right: Deep<Expr>
     let ((left, left_depth), (right, right_depth)) = (left, right);
     let at = builder.span(operator);
     let span = left.span.to(right.span);
-    let operator = match binary(operator.as_str()) {
+    let rule = operator.as_rule();
+    if matches!(rule, Rule::foreign_power | Rule::foreign_product) && !matches!(operator.as_str(), "×" | "÷")
+    {
+        let function = if rule == Rule::foreign_power { "pow" } else { "mod" };
+        let sign = operator.as_str();
+        builder.report(errors::operator_for_function(sign, function, at, left.span, right.span));
+        return invalid(span);
+    }
+    let operator = match binary(operator.as_str()).or_else(|| foreign(builder, operator)) {
         Some(operator) => operator,
         None => {
             let edit = Span { start: left.span.end, end: right.span.start.max(at.end), ..at };
@@ -120,6 +128,21 @@ fn infix(builder: &Builder, left: Deep<Expr>, operator: &Node, right: Deep<Expr>
     };
     let kind = ExprKind::Binary { operator, at, left: Box::new(left), right: Box::new(right) };
     checked(builder, Expr { kind, span }, 1 + left_depth.max(right_depth), at)
+}
+
+/// The operator that goes by another sign elsewhere.
+fn foreign(builder: &Builder, operator: &Node) -> Option<BinaryOp> {
+    let here = match operator.as_rule() {
+        Rule::foreign_and => BinaryOp::And,
+        Rule::foreign_or => BinaryOp::Or,
+        Rule::foreign_equals => BinaryOp::Equal,
+        Rule::foreign_product if operator.as_str() == "×" => BinaryOp::Multiply,
+        Rule::foreign_product => BinaryOp::Divide,
+        _ => return None,
+    };
+    let place = builder.trimmed(operator);
+    builder.report(errors::foreign_operator(operator.as_str().trim_ascii_end(), here.symbol(), place));
+    Some(here)
 }
 
 fn primary(builder: &Builder, pair: Node) -> Deep<Expr> {
@@ -136,6 +159,10 @@ fn primary(builder: &Builder, pair: Node) -> Deep<Expr> {
         Rule::angled => angled(builder, pair),
         Rule::malformed => {
             builder.report(errors::bad_number(pair.as_str(), span));
+            invalid(span)
+        }
+        Rule::bare_body => {
+            builder.report(errors::unexpected_value("{", Span { end: span.start + 1, ..span }));
             invalid(span)
         }
         Rule::absent | Rule::head_absent => absent(builder, &pair),
@@ -195,9 +222,8 @@ fn reference(builder: &Builder, pair: Node) -> Deep<Expr> {
             if body.as_rule() == Rule::arguments {
                 return call(builder, kind, body, span);
             }
-            let (construct, depth) = builder.construct(kind, body);
-            let kind = ExprKind::Construct(Box::new(construct));
-            checked(builder, Expr { kind, span }, depth, span)
+            let (made, depth) = builder.made(kind, body, span);
+            checked(builder, Expr { span, ..made }, depth, span)
         }
     }
 }
@@ -254,10 +280,7 @@ fn conditional(builder: &Builder, pair: Node) -> Deep<Expr> {
 
 /// The arguments in the parentheses of a prefix, and their depth.
 pub(super) fn arguments(builder: &Builder, pair: Node) -> Deep<Vec<Argument>> {
-    let Elements { arguments, depth, unit, .. } = elements(builder, pair);
-    if let Some(unit) = unit {
-        builder.report(errors::unexpected_extra(&unit.text, unit.span));
-    }
+    let Elements { arguments, depth, .. } = elements(builder, pair);
     (arguments, depth)
 }
 
@@ -296,7 +319,7 @@ fn elements(builder: &Builder, pair: Node) -> Elements {
             _ => {
                 let close = builder.span(&pair);
                 // Where none was written, one may have been put into the white space before what showed that.
-                found.closed = pair.as_str().starts_with(')') && !builder.is_blank(close.start);
+                found.closed = pair.as_str().starts_with([')', ']']) && !builder.is_blank(close.start);
                 found.end = if found.closed { close.start + 1 } else { close.start };
                 found.unit = pair.into_inner().next().map(|unit| unit_name(builder, unit));
             }
@@ -325,10 +348,9 @@ fn group(builder: &Builder, pair: Node) -> Deep<Expr> {
     let outer = builder.span(&pair);
     let Elements { arguments, depth, unit, end, closed } = elements(builder, pair);
     let span = Span { end, ..outer };
-    for argument in &arguments {
-        if let Some(name) = &argument.name {
-            builder.report(errors::label_outside_call(&name.text, name.span));
-        }
+    // One for all of them.
+    if let Some(name) = arguments.iter().find_map(|argument| argument.name.as_ref()) {
+        builder.report(errors::label_outside_call(&name.text, name.span));
     }
     let mut values: Vec<Expr> = arguments.into_iter().map(|argument| argument.value).collect();
     let kind = match values.len() {
@@ -348,9 +370,15 @@ fn group(builder: &Builder, pair: Node) -> Deep<Expr> {
 /// `[a, b]`
 fn list(builder: &Builder, pair: Node) -> Deep<Expr> {
     let span = builder.span(&pair);
-    let Elements { arguments, depth, .. } = elements(builder, pair);
-    for name in arguments.iter().filter_map(|argument| argument.name.as_ref()) {
+    let Elements { arguments, depth, unit, end, .. } = elements(builder, pair);
+    // One for all of them.
+    if let Some(name) = arguments.iter().find_map(|argument| argument.name.as_ref()) {
         builder.report(errors::label_outside_call(&name.text, name.span));
+    }
+    if let Some(unit) = unit {
+        let (open, close) = (Span { end: span.start + 1, ..span }, Span { start: end - 1, end, ..span });
+        builder.report(errors::list_with_unit(unit.span, open, close));
+        return invalid(span);
     }
     let values = arguments.into_iter().map(|argument| argument.value).collect();
     checked(builder, Expr { kind: ExprKind::List(values), span }, depth + 1, span)

@@ -194,6 +194,12 @@ fn info_tells_what_is_in_a_scene() {
     assert_eq!((&object["params"][0]["name"], &object["params"][0]["range"][1]), (&"n".into(), &"9".into()));
     desk.run("info set.rt --set m=5").expect(1, &["E0503"]);
     desk.run("check set.rt --set n=9 --max-things 4").expect(1, &["E0406"]);
+    desk.run("check set.rt --max-brackets 1").expect(1, &["E0406", "more than 1 deep"]);
+    desk.run("check set.rt --max-brackets 4096 --max-source 4095").expect(0, &[]);
+    desk.run("check set.rt --max-brackets 5000").expect(2, &["4096"]);
+    desk.put("long.rt", format!("// {}\nsphere {{ radius: 1m }}\n", "x".repeat(1 << 20)));
+    desk.run("check long.rt").expect(0, &[]);
+    desk.run("check long.rt --max-source 1").expect(1, &["E0406", "1 MiB"]);
     desk.put("bad.rt", "sphere {}\n");
     desk.run("info bad.rt").expect(1, &["E0302"]);
     desk.run("info missing.rt").expect(2, &["missing.rt"]);

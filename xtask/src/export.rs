@@ -1,7 +1,7 @@
 //! Exports against the renderers that they are for: Mitsuba draws what it can, POV-Ray what comes straight from
 //! lights. Both make nearly the picture that we make.
 
-use super::{Outcome, Place, run};
+use super::{Outcome, Place, run, tools};
 use std::fs;
 use std::process::Command;
 
@@ -14,10 +14,11 @@ const MITSUBA: &[(&str, &str, &[&str])] = &[
     ("dusk", DUSK, &[]),
     ("knot", KNOT, &["--approximate"]),
     ("towers", TOWERS, &["--approximate", "--tessellate", "96"]),
+    ("painted", PAINTED, &["--approximate"]),
 ];
 
 /// Scenes for POV-Ray.
-const POV: &[(&str, &str)] = &[("direct", DIRECT), ("spot", SPOT)];
+const POV: &[(&str, &str)] = &[("direct", DIRECT), ("spot", SPOT), ("cells", CELLS)];
 
 const ROOM: &str = "\
 sphere { at: (0, -100, 0)m, radius: 100m, material: diffuse { color: rgb(0.5, 0.6, 0.7) } }
@@ -87,8 +88,19 @@ camera { from: (0, 2.5, 7)m, look: (0, 1.4, 0)m, exposure: 0 }
 render { size: (160, 120), samples: 256, filter: box }
 ";
 
+const PAINTED: &str = "\
+plane { material: diffuse { color: checker(rgb(0.7, 0.7, 0.7), rgb(0.2, 0.1, 0.1), 70cm) } }
+box { at: (-1.6, 0.6, 0)m, size: (1.2, 1.2, 1.2)m, place: turn(y: 30deg), material: diffuse { color: stripes(rgb(0.8, 0.2, 0.1), checker(rgb(0.9, 0.9, 0.9), rgb(0.1, 0.1, 0.1), 15cm), width: 30cm, along: (1, 1, 0)) } }
+box { at: (1.5, 0.75, 1)m, size: (1, 1.5, 0.2)m, place: turn(y: -30deg), material: diffuse { color: image(\"letter.png\", size: 40cm) } }
+sphere { at: (0, 0.7, 0)m, radius: 70cm, place: turn(y: 50deg) |> turn(x: 20deg), material: diffuse { color: image(\"letter.png\") } }
+light { at: (2, 5, 4)m, power: 500W }
+sky { radiance: 0.3W/m2 }
+camera { from: (0, 4, 7)m, look: (0, 0.4, 0)m, exposure: 0 }
+render { size: (160, 120), samples: 256, filter: box }
+";
+
 /// Files that the scenes name, among the cases of pictures.
-const FILES: &[&str] = &["dusk.hdr", "knot.ply"];
+const FILES: &[&str] = &["dusk.hdr", "knot.ply", "letter.png"];
 
 const DIRECT: &str = "\
 plane { material: diffuse { color: rgb(0.5, 0.6, 0.7) } }
@@ -110,9 +122,21 @@ camera { from: (0, 3, 8)m, look: (0, 0.8, 0)m, width: 8m, exposure: 0 }
 render { size: (160, 120), samples: 64, filter: box, indirect: false }
 ";
 
+const CELLS: &str = "\
+plane { material: diffuse { color: checker(rgb(0.7, 0.7, 0.7), rgb(0.2, 0.1, 0.1), 70cm) } }
+box { at: (-1.6, 0.61, 0)m, size: (1.2, 1.2, 1.2)m, place: turn(y: 30deg), material: diffuse { color: stripes(rgb(0.8, 0.2, 0.1), checker(rgb(0.9, 0.9, 0.9), rgb(0.1, 0.1, 0.1), 15cm), width: 30cm, along: (1, 1, 0)) } }
+sphere { at: (0, 0.8, 0)m, radius: 80cm, place: turn(z: 20deg), material: diffuse { color: checker(rgb(0.2, 0.3, 0.8), rgb(0.9, 0.9, 0.9), 40cm) } }
+cylinder { at: (1.8, 0.01, 0)m, radius: 60cm, height: 1m, material: diffuse { color: checker(rgb(0.2, 0.8, 0.3), stripes(rgb(0.9, 0.9, 0.9), rgb(0.5, 0.1, 0.1), width: 5cm, along: (0, 1, 0)), 25cm) } }
+box { at: (0, 0.31, 2)m, size: (0.6, 0.6, 0.6)m, material: mirror { color: stripes(rgb(0.9, 0.9, 0.9), rgb(0.3, 0.3, 0.3), width: 10cm, along: (0, 1, 0)) } }
+light { at: (2, 5, 4)m, power: 500W }
+camera { from: (0, 3, 8)m, look: (0, 0.6, 0.5)m, exposure: 0 }
+render { size: (160, 120), samples: 64, filter: box, indirect: false }
+";
+
 /// Exports, renders and compares each scene.
 pub fn agreement(place: &Place) -> Outcome {
-    let python = mitsuba(place)?;
+    tools::povray()?;
+    let python = tools::mitsuba(&place.desk.with_file_name("mitsuba"))?;
     let script = place.root.join("xtask/e2e/export.py");
     for file in FILES {
         let from = place.root.join("tests/cases/pictures").join(file);
@@ -156,17 +180,4 @@ fn prepare(
         .arg("-o")
         .arg(scene.with_extension("pfm")))?;
     Ok(export)
-}
-
-/// A Python that has Mitsuba, in an environment beside the steps, made if need be.
-fn mitsuba(place: &Place) -> Result<std::path::PathBuf, String> {
-    let folder = place.desk.with_file_name("mitsuba");
-    let python = folder.join("bin/python");
-    let works =
-        || Command::new(&python).args(["-c", "import mitsuba, numpy"]).status().is_ok_and(|s| s.success());
-    if !works() {
-        run(Command::new("python3").args(["-m", "venv"]).arg(&folder))?;
-        run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "mitsuba==3.9.1", "numpy"]))?;
-    }
-    Ok(python)
 }

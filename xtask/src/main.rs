@@ -3,9 +3,11 @@
 //!
 //! Nothing is skipped quietly. A tool that is missing fails the step that needs it, with its name.
 
+mod compare;
 mod export;
 mod readme;
 mod reference;
+mod tools;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -34,6 +36,11 @@ cargo xtask gallery
 
   makes the pictures of docs/gallery anew, in about ten minutes on two cores
 
+cargo xtask compare [--rounds N] [SCENE…]
+
+  renders scenes in turns with Mitsuba and POV-Ray, on an idle machine, and prints what each took; all of them
+  take about an hour
+
 cargo xtask e2e [STEP…]
 
   terminal   progress on a pseudo-terminal, and Ctrl-C within 100 ms
@@ -44,7 +51,8 @@ cargo xtask e2e [STEP…]
   export     exported scenes against Mitsuba (from PyPI) and POV-Ray (povray, of Debian)
   readme     every command of the README, in a fresh clone of HEAD
 
-Without STEP all are run. Needs python3, bash, git and, for full-disk, leave to mount a tmpfs.";
+Without STEP all are run. Needs python3, bash, git and, for full-disk, leave to mount a tmpfs. What else a step needs
+it installs, from Debian or PyPI, or says that it cannot.";
 
 /// Where things are.
 struct Place {
@@ -61,6 +69,7 @@ fn main() -> ExitCode {
     let ended = match arguments.split_first() {
         Some((task, steps)) if task == "e2e" => e2e(steps),
         Some((task, [])) if task == "gallery" => gallery(),
+        Some((task, arguments)) if task == "compare" => compare::compare(arguments),
         _ => Err(USAGE.into()),
     };
     match ended {

@@ -47,7 +47,14 @@ pub(in crate::check) fn mismatch(
                 let name = text.trim_matches('"');
                 diagnostic.help(format!("the name of a colour has no quotes: `{name}`")).fix(span, name)
             }
+            (FieldType::Color | FieldType::Paint, Type::Text) if is_code(text) => {
+                let code = text.trim_matches('"');
+                diagnostic.help(format!("a colour has no quotes: `{code}`")).fix(span, code)
+            }
             (FieldType::Color | FieldType::Paint, _) => diagnostic.help(color_help(text, ty)),
+            (FieldType::Made(_) | FieldType::Target | FieldType::Named(_), Type::Text) => {
+                diagnostic.help(format!("a name has no quotes: `{}`", text.trim_matches('"')))
+            }
             (FieldType::Made(_), _) => diagnostic.help("such as `diffuse { color: #d94f30 }`"),
             (FieldType::Transform, _) => {
                 diagnostic.help("such as `scale(2) |> turn(z: 10deg) |> move(0, 1m, 0)`")
@@ -58,6 +65,11 @@ pub(in crate::check) fn mismatch(
             },
         },
     }
+}
+
+/// Whether a quoted text is the code of a colour.
+fn is_code(text: &str) -> bool {
+    text.trim_matches('"').strip_prefix('#').is_some_and(|digits| crate::color::from_hex(digits).is_some())
 }
 
 fn mismatch_code(wanted: FieldType, ty: &Type) -> Code {
@@ -165,6 +177,7 @@ pub(in crate::check) fn component_not_number(span: Span, ty: &Type) -> Diagnosti
 pub(in crate::check) fn long_tuple(span: Span, count: usize) -> Diagnostic {
     Diagnostic::new(Code::E0201, format!("{count} components, where two or three are possible"), span)
         .at(format!("{count} components"))
+        .help("commas separate, and a decimal point is written `.`: `(0.5, 1, 2)`")
 }
 
 pub(in crate::check) fn unit_on_quantity(unit: &Name, value: Span, ty: &Type) -> Diagnostic {
@@ -198,10 +211,17 @@ pub(in crate::check) fn operand(symbol: &str, wanted: &str, span: Span, ty: &Typ
 
 pub(in crate::check) fn operands(symbol: &str, at: Span, [a, b]: [(Span, &Type); 2]) -> Diagnostic {
     let message = format!("`{symbol}` cannot join {} and {}", a.1.describe(), b.1.describe());
-    Diagnostic::new(Code::E0201, message, at)
+    let diagnostic = Diagnostic::new(Code::E0201, message, at)
         .at("these do not fit")
         .label(a.0, a.1.describe())
-        .label(b.0, b.1.describe())
+        .label(b.0, b.1.describe());
+    match (a.1, b.1) {
+        (Type::Transform, Type::Transform) => {
+            diagnostic.help("placements are joined by `|>`, in the order in which they act: `a |> b`")
+        }
+        (Type::Text, Type::Text) => diagnostic.help("write it as one text: texts are not computed"),
+        _ => diagnostic,
+    }
 }
 
 pub(in crate::check) fn sum(symbol: &str, at: Span, [a, b]: [(Span, &Type); 2]) -> Diagnostic {

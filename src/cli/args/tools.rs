@@ -1,11 +1,13 @@
 //! Flags of the commands that make no picture, and those that they share with the ones that do.
 
 use super::values::{Denied, denied};
+use clap::builder::TypedValueParser;
 use clap::{Args, ValueEnum};
 use clap_complete::Shell;
 use rt_lang::Options;
 use rt_lang::eval::Limits;
 use rt_lang::lower::Overrides;
+use rt_lang::syntax::{self, MAX_DEPTH, MAX_SOURCE};
 use std::path::PathBuf;
 
 /// What a scene may read.
@@ -36,6 +38,16 @@ pub struct Reading {
     /// Refuses scenes that take more steps than this to evaluate.
     #[arg(long, value_name = "N", default_value_t = Limits::default().steps, hide_short_help = true)]
     pub max_steps: u64,
+
+    /// Refuses scene files of more mebibytes than this.
+    #[arg(long, value_name = "MIB", default_value_t = Limits::default().text.source >> 20, hide_short_help = true,
+        value_parser = mebibytes())]
+    pub max_source: usize,
+
+    /// Refuses brackets within each other, and operations, deeper than this.
+    #[arg(long, value_name = "N", default_value_t = Limits::default().text.depth, hide_short_help = true,
+        value_parser = brackets())]
+    pub max_brackets: usize,
 }
 
 impl Reading {
@@ -43,8 +55,23 @@ impl Reading {
     pub fn options(&self, overrides: Overrides) -> Options {
         let Reading { max_things: things, max_levels: levels, max_items: items, max_steps: steps, .. } =
             *self;
-        Options { overrides, set: self.set.clone(), limits: Limits { things, levels, items, steps } }
+        let limits = Limits { things, levels, items, steps, text: self.limits() };
+        Options { overrides, set: self.set.clone(), limits }
     }
+
+    /// What reading the files may take.
+    pub fn limits(&self) -> syntax::Limits {
+        syntax::Limits { source: self.max_source << 20, depth: self.max_brackets }
+    }
+}
+
+/// Places in a source are counted in 32 bits.
+fn mebibytes() -> impl TypedValueParser<Value = usize> {
+    clap::value_parser!(u64).range(1..=(MAX_SOURCE >> 20) as u64).map(|n| n as usize)
+}
+
+fn brackets() -> impl TypedValueParser<Value = usize> {
+    clap::value_parser!(u64).range(1..=MAX_DEPTH as u64).map(|n| n as usize)
 }
 
 /// How messages are written, and which warnings are not let pass.

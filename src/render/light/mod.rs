@@ -531,6 +531,7 @@ impl Lamp {
     }
 
     /// Draws directions towards it, where it can be seen from there.
+    #[expect(clippy::too_many_arguments, reason = "it is told who asks, and adds to what others drew")]
     #[inline(always)]
     fn sample<L: Lanes>(
         &self,

@@ -1,17 +1,17 @@
 //! Brackets: which closes which, and what is taken to be meant where they do not match.
 
-use super::super::{MAX_DEPTH, errors};
-use super::{Cutter, Gap, Last, Level};
+use super::super::errors;
+use super::{Cutter, Gap, Last, Level, Stray};
 use crate::span::Span;
 
 impl Cutter<'_> {
     pub(super) fn open(&mut self) -> Last {
         let byte = self.bytes[self.at];
-        if self.beyond > 0 || self.levels.len() == MAX_DEPTH {
+        if self.beyond > 0 || self.levels.len() == self.most {
             if !self.skipped {
                 self.skipped = true;
                 let place = self.span(self.at, self.at + 1);
-                self.out.sink.push(errors::deep_brackets(place));
+                self.out.sink.push(errors::deep_brackets(place, self.most));
             }
             self.beyond += 1;
         } else {
@@ -152,7 +152,7 @@ impl Cutter<'_> {
             self.at += 1;
         }
         let place = self.span(start, self.at);
-        self.out.sink.push(errors::stray_closer(place, char::from(closer)));
+        self.out.strays.push(Stray { span: place, closer: char::from(closer) });
         if self.item.is_some() {
             self.edits.push((start..self.at, b' '));
         }

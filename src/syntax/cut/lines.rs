@@ -146,7 +146,7 @@ impl<'t> Cutter<'t> {
         let word = self.word(self.at);
         let inside =
             matches!(word, "and" | "or" | "to" | "in" | "as" | "then" | "else" | "elif" | "elseif" | "elsif");
-        inside && !matches!(self.byte(self.at + word.len()), b':' | b'=')
+        inside && (word == "else" || !matches!(self.byte(self.at + word.len()), b':' | b'='))
     }
 
     /// `let name`, `param name` and the like, `import "…"` or a prefix

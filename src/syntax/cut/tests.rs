@@ -6,7 +6,7 @@ use crate::span::SourceId;
 
 /// The items of a text, each as the grammar reads it.
 fn items(text: &str) -> Vec<String> {
-    let cut = cut(SourceId(0), text);
+    let cut = cut(SourceId(0), text, 512);
     for item in &cut.items {
         let source = &text[item.start..item.start + item.text.len()];
         assert!(source.len() == item.text.len());
@@ -15,7 +15,7 @@ fn items(text: &str) -> Vec<String> {
 }
 
 fn codes(text: &str) -> Vec<Code> {
-    cut(SourceId(0), text).sink.into_sorted().iter().map(|diagnostic| diagnostic.code).collect()
+    cut(SourceId(0), text, 512).sink.into_sorted().iter().map(|diagnostic| diagnostic.code).collect()
 }
 
 #[test]
@@ -30,13 +30,13 @@ fn items_end_at_newlines_and_commas() {
 fn comments_are_blank_and_kept() {
     assert_eq!(items("a { // é\n b: 1 /* 2 */ }"), ["a {      \n b: 1         }"]);
     assert_eq!(items("// only"), [""; 0]);
-    let comments = cut(SourceId(0), "// a\n/* b\n*/ c {} /// d\r\n").comments;
+    let comments = cut(SourceId(0), "// a\n/* b\n*/ c {} /// d\r\n", 512).comments;
     assert_eq!(comments.iter().map(|c| c.span.range()).collect::<Vec<_>>(), [0..4, 5..12, 18..23]);
 }
 
 #[test]
 fn an_item_that_reads_as_written_is_borrowed() {
-    let cut = cut(SourceId(0), "sphere {\n  radius: 1m\n}\n");
+    let cut = cut(SourceId(0), "sphere {\n  radius: 1m\n}\n", 512);
     assert!(matches!(cut.items[0].text, std::borrow::Cow::Borrowed(_)));
 }
 
@@ -82,7 +82,7 @@ fn text_ends_on_its_line() {
 #[test]
 fn limits_skip_one_item() {
     let text = format!("let a = {}1{}\nb {{}}", "(".repeat(600), ")".repeat(600));
-    let cut = cut(SourceId(0), &text);
+    let cut = cut(SourceId(0), &text, 512);
     assert_eq!(cut.items.iter().map(|item| item.skipped).collect::<Vec<_>>(), [true, false]);
     assert_eq!(codes(&text), [Code::E0406]);
 }

@@ -1,0 +1,67 @@
+//! What is said of names that nothing declares, by what is wanted where they stand.
+
+use super::{closest, quoted, unknown, unknown_name};
+use crate::color;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::schema::{self, Category, FieldType, familiar};
+use crate::syntax::ast::Name;
+
+/// An unknown name as a value. `setting` is whether it stands in a `--set`.
+pub(in crate::check) fn unknown_value(
+    wanted: FieldType,
+    name: &Name,
+    candidates: &[&str],
+    setting: bool,
+) -> Diagnostic {
+    let text = name.text.as_str();
+    let guess = closest(text, candidates);
+    let diagnostic =
+        Diagnostic::new(Code::E0101, format!("unknown name `{text}`"), name.span).at("not known here");
+    match wanted {
+        // It is a kind, which makes what is wanted.
+        _ if schema::kind(text).is_some() => unknown_name(name, candidates),
+        FieldType::Text if guess.is_none() && setting => {
+            diagnostic.help(format!("a text has quotes of its own: `--set 'NAME=\"{text}\"'`"))
+        }
+        FieldType::Text if guess.is_none() => diagnostic
+            .help(format!("a text stands in quotes: `\"{text}\"`"))
+            .fix(name.span, format!("\"{text}\"")),
+        FieldType::Color | FieldType::Paint => unknown_color(name, candidates),
+        FieldType::Made(Category::Material) if guess.is_none() => {
+            let made = familiar::kind(text).and_then(|here| here.name).filter(|kind| is_material(kind));
+            let made = made.unwrap_or("diffuse");
+            diagnostic.help(format!("declare it: `material {text} = {made} {{ … }}`"))
+        }
+        _ if setting && guess.is_none() => unknown_in_setting(name),
+        _ => unknown_name(name, candidates),
+    }
+}
+
+fn is_material(kind: &str) -> bool {
+    schema::kind(kind).is_some_and(|kind| kind.get().category == Category::Material)
+}
+
+/// An unknown name in a `--set`, which declares nothing.
+pub(in crate::check) fn unknown_in_setting(name: &Name) -> Diagnostic {
+    Diagnostic::new(Code::E0101, format!("unknown name `{}`", name.text), name.span)
+        .at("not known here")
+        .help("a setting may use what the scene declares at its top level, and the names of colours")
+}
+
+fn unknown_color(name: &Name, candidates: &[&str]) -> Diagnostic {
+    let text = name.text.as_str();
+    let code = color::css(text).or(color::from_hex(text).map(|_| text));
+    if let Some(code) = code {
+        return Diagnostic::new(Code::E0101, format!("unknown colour `{text}`"), name.span)
+            .at("has no name here")
+            .help(format!("write `#{code}`"))
+            .fix(name.span, format!("#{code}"));
+    }
+    if closest(text, candidates).is_some() || schema::kind(text).is_some() {
+        return unknown(Code::E0101, "name", name, candidates);
+    }
+    let known: Vec<&str> = color::NAMED.iter().map(|(name, _)| *name).collect();
+    Diagnostic::new(Code::E0101, format!("unknown colour `{text}`"), name.span)
+        .at("not known here")
+        .help(format!("the named colours are {}; any other is written `#d94f30`", quoted(&known)))
+}

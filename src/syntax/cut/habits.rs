@@ -1,0 +1,51 @@
+//! What other languages begin comments and directives with, and the decimal comma.
+
+use super::super::errors;
+use super::{Cutter, Last, is_word};
+
+impl Cutter<'_> {
+    /// Whether a comma at the top level stands within a number: `let a = 1,5m`.
+    pub(super) fn is_decimal_comma(&self) -> bool {
+        let digit = |at: usize| self.byte(at).is_ascii_digit();
+        self.at > 0 && digit(self.at - 1) && digit(self.at + 1)
+    }
+
+    /// `# a comment`, `-- a comment`, `#include`: what begins so is no value. A colour has its digits at once, and
+    /// begins no entry.
+    pub(super) fn begins_foreign_comment(&self) -> bool {
+        let entry = matches!(self.innermost(), 0 | b'{') && self.last == Last::Open && self.splits;
+        let next = self.byte(self.at + 1);
+        match self.bytes[self.at] {
+            b'#' => {
+                let blank = matches!(next, b' ' | b'\t' | b'#' | b'!');
+                entry || blank && self.last == Last::Operand && self.splits
+            }
+            _ => entry && next == b'-',
+        }
+    }
+
+    /// Takes the rest of the line for what it is meant as.
+    pub(super) fn foreign_comment(&mut self) -> Last {
+        let start = self.at;
+        let line = self.text[start..].split('\n').next().unwrap_or("").trim_ascii_end();
+        let length = line.len();
+        let word = self.word(start + 1);
+        if line.starts_with('#') && word.bytes().next().is_some_and(is_word) {
+            let place = self.span(start, start + 1 + word.len());
+            self.out.sink.push(errors::directive(word, place));
+        } else {
+            let sign = line.bytes().take_while(|&byte| byte == line.as_bytes()[0]).count();
+            self.foreign_comments.push(self.span(start, start + sign));
+        }
+        self.blot(start, start + length);
+        self.take(length, Last::Operand)
+    }
+
+    /// One message for all the comments that begin otherwise.
+    pub(super) fn report_foreign_comments(&mut self) {
+        let sign = self.foreign_comments.first().map_or("", |place| &self.text[place.range()]);
+        if let Some(diagnostic) = errors::foreign_comments(sign, &self.foreign_comments) {
+            self.out.sink.push(diagnostic);
+        }
+    }
+}

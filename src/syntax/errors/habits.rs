@@ -1,0 +1,193 @@
+//! What is said to whoever writes as in another language: one message for the habit, with the way it is written
+//! here.
+
+use super::{shown, unexpected};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::span::Span;
+
+/// What begins a statement elsewhere, and how that is written here.
+const WORDS: &[(&[&str], &str)] = &[
+    (&["while", "loop", "repeat", "foreach", "do"], "`for` repeats: `for i in range(7) { … }`"),
+    (
+        &["def", "function", "func", "fun", "macro", "define", "lambda"],
+        "a function is written `fn name(x: number) -> number = 2 * x`",
+    ),
+    (
+        &["include", "from", "using", "use", "require", "load"],
+        "a file is taken in by `import \"file.rt\" as name`",
+    ),
+    (
+        &[
+            "var", "const", "local", "global", "static", "auto", "declare", "float", "double", "int",
+            "string", "color", "vec3", "set",
+        ],
+        "a value is named by `let name = …`",
+    ),
+    (&["class", "struct", "module", "object"], "what is used several times is a `part name { … }`"),
+    (&["switch", "match", "case", "when", "unless"], "a choice is written `if … { … } else { … }`"),
+    (&["print", "echo", "log", "trace"], "nothing is printed; `rtc info` tells what a scene holds"),
+    (&["return"], "a function is one value: `fn name(x: number) -> number = 2 * x`"),
+];
+
+/// `while i < 3 {`, `def f(x):`, `var x = 3`: a statement of another language, if the word begins one.
+pub(in crate::syntax) fn habit(word: &str, span: Span) -> Option<Diagnostic> {
+    let (_, way) = WORDS.iter().find(|(words, _)| words.contains(&word))?;
+    let diagnostic = unexpected(word, span).at("is no word of the language").help(*way);
+    Some(match word {
+        "var" | "const" => diagnostic.fix(span, "let"),
+        _ => diagnostic,
+    })
+}
+
+/// How the things that scenes of other tools are made of are written here.
+fn written(kind: &str) -> &'static str {
+    match kind {
+        "sphere" | "ball" => "`sphere { at: (0, 1, 0)m, radius: 2m, material: diffuse { color: red } }`",
+        "box" | "cube" => "`box { at: (0, 1, 0)m, size: (2, 2, 2)m }`, which stands around `at`",
+        "plane" => "`plane { at: (0, -1, 0)m, normal: (0, 1, 0) }`",
+        "cylinder" | "cone" => "`cylinder { at: (0, 1, 0)m, radius: 50cm, height: 2m }`",
+        "disc" | "disk" => "`disk { at: (0, 1, 0)m, normal: (0, 1, 0), radius: 50cm }`",
+        "camera" => "`camera { from: (0, 1, 4)m, look: (0, 0, 0)m }`",
+        "light" | "light_source" => "`light { at: (2, 4, 3)m, power: 60W, color: white }`",
+        _ => "`sphere { at: (0, 1, 0)m, radius: 2m }`",
+    }
+}
+
+/// `sphere { <0, 1, 0>, 2 pigment { color Red } }`, `camera { location <0, 1, 4> }`
+pub(in crate::syntax) fn foreign_body(kind: &str, span: Span, angled: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("the body of this `{kind}` is written as in another language"), span)
+        .at("its fields have names, each with `:` behind it")
+        .label(angled, "and no value stands in `<…>`")
+        .help(format!("write {}", written(kind)))
+}
+
+/// `sphere: { radius: 1m }`, `sphere = { radius: 1m }`
+pub(in crate::syntax) fn sign_before_body(kind: &str, sign: &str, edit: Span) -> Diagnostic {
+    unexpected(sign, edit)
+        .at("the body follows its kind at once")
+        .help(format!("write `{kind} {{ … }}`"))
+        .fix(edit, " ")
+}
+
+/// `radius: 1,5m`
+pub(in crate::syntax) fn decimal_comma(whole: &str, rest: &str, span: Span, comma: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0008, format!("`{whole},{rest}` has a decimal comma"), span)
+        .at("a point is wanted")
+        .help(format!("write a point: `{whole}.{rest}`"))
+        .fix(comma, ".")
+}
+
+/// Whether the text behind a name at the top level goes on as where values are changed: `x += 1`, `ball.radius = 2m`.
+pub(in crate::syntax) fn changes(rest: &str) -> bool {
+    let rest = rest.trim_ascii_start();
+    ["+=", "-=", "*=", "/=", "++", "--", "."].iter().any(|sign| rest.starts_with(sign))
+}
+
+/// `x += 1`, `ball.radius = 2m`
+pub(in crate::syntax) fn changed(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("`{name}` cannot be changed"), span)
+        .at("keeps the value that it is declared with")
+        .help("a field is given where the thing is made, and another value has another name: `let next = …`")
+}
+
+/// `move(0, 1m, 0)` where a field should begin.
+pub(in crate::syntax) fn placement_alone(name: &str, span: Span) -> Diagnostic {
+    unexpected(name, span)
+        .at("a field should begin here")
+        .help("placements stand behind `place:`, joined by `|>`: `place: turn(y: 30deg) |> move(0, 1m, 0)`")
+}
+
+/// `a && b`, `a || b`, `a = b`: operators with another name here.
+pub(in crate::syntax) fn foreign_operator(sign: &str, here: &'static str, span: Span) -> Diagnostic {
+    let diagnostic = unexpected(sign, span).at(format!("`{here}` is wanted"));
+    let diagnostic = match here {
+        "and" => diagnostic.help("both conditions at once are written `a and b`"),
+        "or" => diagnostic.help("either condition is written `a or b`"),
+        "==" => diagnostic.help("whether two values are equal is asked by `a == b`"),
+        "*" => diagnostic.help("times is written `*`"),
+        _ => diagnostic.help("divided by is written `/`"),
+    };
+    diagnostic.fix(span, here)
+}
+
+/// `a % b`, `a ** b`: functions here.
+pub(in crate::syntax) fn operator_for_function(
+    sign: &str,
+    function: &str,
+    span: Span,
+    left: Span,
+    right: Span,
+) -> Diagnostic {
+    let what = if function == "mod" { "the remainder" } else { "a power" };
+    let between = Span { start: left.end, end: right.start.max(left.end), ..span };
+    unexpected(sign, span)
+        .at("is no operator")
+        .help(format!("{what} is written `{function}(a, b)`"))
+        .fix(left.before(), format!("{function}("))
+        .fix(between, ", ")
+        .fix(right.after(), ")")
+}
+
+/// `[0, 1, 2]m`
+pub(in crate::syntax) fn list_with_unit(unit: Span, open: Span, close: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, "a unit stands behind a list", unit)
+        .at("goes on numbers and on triples")
+        .help("a triple stands in parentheses: `(0, 1, 2)m`")
+        .fix(open, "(")
+        .fix(close, ")")
+}
+
+/// `for i in range(3):` with its body on the next lines, without braces.
+pub(in crate::syntax) fn unbraced(word: &str, colon: Span) -> Diagnostic {
+    unexpected(":", colon).at("`{` is wanted").help(match word {
+        "for" => "the body stands in braces: `for i in range(3) { … }`",
+        _ => "the body stands in braces: `if … { … } else { … }`",
+    })
+}
+
+/// `# a comment`, `-- a comment`: the places of what begins each of them.
+pub(in crate::syntax) fn foreign_comments(sign: &str, places: &[Span]) -> Option<Diagnostic> {
+    let diagnostic = unexpected(sign, *places.first()?).at("a comment begins with `//`");
+    let diagnostic = diagnostic.help(match places.len() {
+        1 => "write `//`".to_string(),
+        n => format!("write `//`, here and in {} more {}", n - 1, if n == 2 { "place" } else { "places" }),
+    });
+    Some(places.iter().fold(diagnostic, |diagnostic, place| diagnostic.fix(*place, "//")))
+}
+
+/// `#include "shapes.inc"`, `#declare R = 2;`
+pub(in crate::syntax) fn directive(word: &str, span: Span) -> Diagnostic {
+    let diagnostic = unexpected("#", span).at("there are no directives");
+    let known = WORDS.iter().find(|(words, _)| words.contains(&word));
+    diagnostic.help(known.map_or("a comment begins with `//`", |(_, way)| *way))
+}
+
+/// Characters that look like those of the language: the first of them, and where they stand for what.
+pub(in crate::syntax) fn lookalike(found: char, places: &[(Span, &'static str)]) -> Option<Diagnostic> {
+    let (first, means) = *places.first()?;
+    let code = u32::from(found);
+    let (message, looks, write) = match means {
+        "" => (
+            format!("unexpected invisible character U+{code:04X}"),
+            "means nothing".into(),
+            "delete it".into(),
+        ),
+        " " => {
+            let message = format!("unexpected special space U+{code:04X}");
+            (message, "looks like a space".into(), "write a plain space".into())
+        }
+        _ => {
+            let message = format!("unexpected {}", shown(&found.to_string()));
+            (message, format!("looks like `{means}`"), format!("write `{means}`"))
+        }
+    };
+    let others = match (places.len() - 1, means) {
+        (0, _) => String::new(),
+        (n, "") => format!(", and {n} more like it"),
+        (n, " ") => format!(", and for {n} more like it"),
+        (1, _) => "; another only looks like a sign of the language".into(),
+        (n, _) => format!("; {n} more only look like signs of the language"),
+    };
+    let diagnostic = Diagnostic::new(Code::E0001, message, first).at(looks).help(write + &others);
+    Some(places.iter().fold(diagnostic, |diagnostic, (place, means)| diagnostic.fix(*place, *means)))
+}

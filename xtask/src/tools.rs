@@ -1,0 +1,48 @@
+//! Programs and libraries of others that steps need.
+
+use super::{Outcome, run};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// LLVM, which Mitsuba compiles its kernels with.
+pub const LLVM: &str = "/usr/lib/x86_64-linux-gnu/libLLVM.so.19.1";
+
+/// Has POV-Ray at hand.
+pub fn povray() -> Outcome {
+    let starts =
+        || Command::new("povray").arg("--version").output().is_ok_and(|output| output.status.success());
+    at_hand("povray", "povray", starts)
+}
+
+/// Has LLVM at hand.
+pub fn llvm() -> Outcome {
+    at_hand(LLVM, "libllvm19", || Path::new(LLVM).exists())
+}
+
+/// A Python that has Mitsuba, in an environment in a folder, made if need be.
+pub fn mitsuba(folder: &Path) -> Result<PathBuf, String> {
+    let python = folder.join("bin/python");
+    let works =
+        || Command::new(&python).args(["-c", "import mitsuba, numpy"]).status().is_ok_and(|s| s.success());
+    if !works() {
+        run(Command::new("python3").args(["-m", "venv"]).arg(folder))?;
+        run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "mitsuba==3.9.1", "numpy"]))?;
+    }
+    Ok(python)
+}
+
+/// Installs what is not there from Debian, where whoever runs this may do that.
+fn at_hand(name: &str, package: &str, is_there: impl Fn() -> bool) -> Outcome {
+    if is_there() {
+        return Ok(());
+    }
+    match debian(&["update", "-qq"]).and_then(|()| debian(&["install", "-y", "-qq", package])) {
+        Ok(()) if is_there() => Ok(()),
+        Ok(()) => Err(format!("the package {package} is installed and has no {name}")),
+        Err(why) => Err(format!("{name} is needed, of Debian's package {package}, and is not there: {why}")),
+    }
+}
+
+fn debian(arguments: &[&str]) -> Outcome {
+    run(Command::new("apt-get").env("DEBIAN_FRONTEND", "noninteractive").args(arguments))
+}
