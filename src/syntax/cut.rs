@@ -184,6 +184,11 @@ struct Cutter<'t> {
     foreign_comments: Vec<Span>,
 }
 
+/// Where a text begins behind the marks that tell its encoding. Programs that put theirs before another's leave several.
+pub(super) fn after_marks(text: &str) -> usize {
+    text.len() - text.trim_start_matches('\u{feff}').len()
+}
+
 impl<'t> Cutter<'t> {
     fn new(source: SourceId, text: &'t str, splits: bool, most: usize) -> Cutter<'t> {
         Cutter {
@@ -193,7 +198,7 @@ impl<'t> Cutter<'t> {
             splits,
             most,
             out: Cut { items: vec![], comments: vec![], sink: Sink::new(), strays: vec![] },
-            at: if text.starts_with('\u{feff}') { 3 } else { 0 },
+            at: after_marks(text),
             indent: 0,
             last: Last::Open,
             comma_allowed: false,

@@ -2,7 +2,7 @@
 //! typesetting. A text that was copied from a page has them. They are reported together, and
 //! each is read as what it looks like as far as that shows where things end.
 
-use super::cut::Cut;
+use super::cut::{Cut, after_marks};
 use super::errors::{self, Sink};
 use crate::span::{SourceId, Span};
 use crate::units;
@@ -114,8 +114,7 @@ struct Reader<'t> {
 
 impl Reader<'_> {
     fn run(&mut self) {
-        // At the beginning of a file it tells the encoding.
-        let mut at = if self.text.starts_with('\u{feff}') { 3 } else { 0 };
+        let mut at = after_marks(self.text);
         while let Some(character) = self.text[at..].chars().next() {
             let rest = &self.text[at..];
             let next = at + character.len_utf8();
