@@ -80,13 +80,13 @@ pub struct Scattering {
     pub wo: [f32; 3],
     /// The normal of the surface itself, on the side of the path.
     pub rim: [f32; 3],
-    /// See [`Bsdfs`].
+    /// See [`Bsdfs`](crate::render::bsdf::Bsdfs).
     pub kind: u32,
-    /// See [`Bsdfs`].
+    /// See [`Bsdfs`](crate::render::bsdf::Bsdfs).
     pub color: [f32; 3],
-    /// See [`Bsdfs`].
+    /// See [`Bsdfs`](crate::render::bsdf::Bsdfs).
     pub alpha: f32,
-    /// See [`Bsdfs`].
+    /// See [`Bsdfs`](crate::render::bsdf::Bsdfs).
     pub coat: u32,
 }
 
