@@ -163,9 +163,10 @@ def exported(scene, ending, sets=(), flags=()):
 
 def mitsuba(scene, variant, export, samples, seed):
     out = path(scene, "npy")
-    script = os.path.join(HERE, "mitsuba.py")
-    text, wall, mb = run([PYTHON, script, variant, THREADS, samples, seed, export, out])
-    times = json.loads(text.splitlines()[-1])
+    script = os.path.join(HERE, "peer.py")
+    _, wall, mb = run([PYTHON, script, variant, THREADS, samples, seed, export, out])
+    with open(out + ".json") as file:
+        times = json.load(file)
     return {"wall": wall - times["second"], "warm": times["second"], "mb": mb, "picture": np.load(out)}
 
 

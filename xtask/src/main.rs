@@ -38,8 +38,7 @@ cargo xtask gallery
 
 cargo xtask compare [--rounds N] [SCENE…]
 
-  renders scenes in turns with Mitsuba and POV-Ray, on an idle machine, and prints what each took; all of them
-  take about an hour
+  renders scenes in turns with Mitsuba and POV-Ray, on an idle machine, and prints what each took
 
 cargo xtask e2e [STEP…]
 

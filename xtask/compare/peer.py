@@ -1,8 +1,8 @@
 """Renders an exported scene with Mitsuba.
 
-Usage: mitsuba.py VARIANT THREADS SAMPLES SEED SCENE.xml OUT.npy
+Usage: peer.py VARIANT THREADS SAMPLES SEED SCENE.xml OUT.npy
 
-Prints, as JSON, the seconds to load the scene, of the first picture (which compiles its kernel), and of a second
+Writes to OUT.npy.json the seconds to load the scene, of the first picture (which compiles its kernel), and of a second
 one, which is the one written.
 """
 
@@ -32,4 +32,6 @@ first = time.perf_counter()
 result = picture(int(seed))
 second = time.perf_counter()
 np.save(out, result)
-print(json.dumps({"load": loaded - start, "first": first - loaded, "second": second - first}))
+# Not to standard output, where progress is drawn.
+with open(out + ".json", "w") as file:
+    json.dump({"load": loaded - start, "first": first - loaded, "second": second - first}, file)
