@@ -13,6 +13,7 @@ pub type Rgb = DVec3;
 const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
 
 /// Luminance of a linear colour, in the unit of its channels.
+#[inline]
 pub fn luminance(color: Rgb) -> f64 {
     color.dot(LUMINANCE)
 }

@@ -75,6 +75,7 @@ pub struct Pixel {
 
 impl Pixel {
     /// Adds a radiance. One that is too large for the scale is cut; one that is no number counts as black.
+    #[inline]
     pub fn add(&mut self, radiance: Rgb, scale: f64) {
         debug_assert!(radiance.is_finite(), "a path carries {radiance}");
         let fixed = |v: f64| nearest((v * scale).clamp(-MOST_FIXED, MOST_FIXED));
@@ -90,6 +91,7 @@ impl Pixel {
     }
 
     /// Adds the weight of a sample to what is covered, or to what is open to a transparent background.
+    #[inline]
     pub fn cover(&mut self, open: bool, weight: f64) {
         let sum = if open { &mut self.open } else { &mut self.covered };
         *sum += nearest(weight * WEIGHT_SCALE);
@@ -136,6 +138,7 @@ impl Pixel {
 }
 
 /// The nearest whole number; 0 of what is no number. `f64::round` is a call where a processor may lack the instruction.
+#[inline]
 fn nearest(v: f64) -> i64 {
     (v + 0.5f64.copysign(v)) as i64
 }

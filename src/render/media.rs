@@ -14,6 +14,7 @@ use crate::render::exact::Exact;
 use crate::scene::nesting::lies_in;
 use crate::scene::shape::Bounds;
 use crate::scene::{Material, PrimitiveId, Projection, Scene, Shape};
+use smallvec::SmallVec;
 
 /// The dielectric solids of a scene.
 pub struct Dielectrics<'s> {
@@ -39,14 +40,21 @@ pub enum Boundary {
 /// The solids that a point of a path lies in, in the order of their declaration, and which of them is the medium.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Inside {
-    solids: Vec<PrimitiveId>,
+    solids: SmallVec<[PrimitiveId; 4]>,
     medium: Option<PrimitiveId>,
 }
 
 impl Inside {
     /// Whether there are none.
+    #[inline]
     pub fn is_empty(&self) -> bool {
         self.solids.is_empty()
+    }
+
+    /// Whether there is none but perhaps this one.
+    #[inline]
+    fn is_at_most(&self, id: PrimitiveId) -> bool {
+        self.solids.iter().all(|&solid| solid == id)
     }
 }
 
@@ -65,18 +73,26 @@ impl<'s> Dielectrics<'s> {
     }
 
     /// Whether there are none.
+    #[inline]
     pub fn is_empty(&self) -> bool {
         self.is_empty
     }
 
     /// Whether any has the index of vacuum, so that its boundary does nothing even outside of all others.
+    #[inline]
     pub fn any_invisible(&self) -> bool {
         self.any_invisible
     }
 
     /// Whether any absorbs light.
+    #[inline]
     pub fn any_absorbing(&self) -> bool {
         self.any_absorbing
+    }
+
+    /// Whether no camera ray starts within any.
+    pub fn are_far_from_camera(&self) -> bool {
+        self.near_camera.is_empty()
     }
 
     /// Sets `inside` to the solids around the start of a camera ray.
@@ -102,23 +118,37 @@ impl<'s> Dielectrics<'s> {
     }
 
     /// What the surface of a dielectric does to a path that enters or leaves it.
+    #[inline]
     pub fn boundary(&self, inside: &Inside, id: PrimitiveId, entering: bool) -> Boundary {
+        if inside.is_at_most(id) {
+            // The common case, with nothing to choose between.
+            return interface(self.index(Some(id)), 1.0, entering);
+        }
         let others = || inside.solids.iter().copied().filter(|&solid| solid != id);
         let without = self.medium(others);
         // An open surface bounds no medium: it refracts where there is no other, and does nothing within one.
         let within =
             if self.is_solid(id) { self.medium(|| others().chain([id])) } else { without.or(Some(id)) };
-        let index = |medium: Option<PrimitiveId>| medium.and_then(|id| ior(self.scene, id)).unwrap_or(1.0);
-        let (within, without) = (index(within), index(without));
-        if within == without {
-            return Boundary::Nothing;
-        }
-        Boundary::Interface(if entering { within / without } else { without / within })
+        interface(self.index(within), self.index(without), entering)
+    }
+
+    /// The refractive index of a medium.
+    #[inline]
+    fn index(&self, medium: Option<PrimitiveId>) -> f64 {
+        medium.and_then(|id| ior(self.scene, id)).unwrap_or(1.0)
     }
 
     /// Takes a path through the surface of a solid. An open surface bounds no medium.
+    #[inline]
     pub fn cross(&self, inside: &mut Inside, id: PrimitiveId, entering: bool) {
         if !self.is_solid(id) {
+            return;
+        }
+        if inside.is_at_most(id) {
+            // The common case, with nothing to choose between.
+            inside.medium = entering.then_some(id);
+            inside.solids.clear();
+            inside.solids.extend(inside.medium);
             return;
         }
         match (entering, inside.solids.binary_search(&id)) {
@@ -132,6 +162,7 @@ impl<'s> Dielectrics<'s> {
     }
 
     /// What the medium absorbs, per metre and channel (Beer and Lambert).
+    #[inline]
     pub fn absorption(&self, inside: &Inside) -> Rgb {
         let medium = inside.medium.map(|id| self.scene.material(&self.scene.primitives[id.0 as usize]));
         match medium {
@@ -153,6 +184,7 @@ impl<'s> Dielectrics<'s> {
         outer != inner && lies_in(b, a) && !lies_in(a, b)
     }
 
+    #[inline]
     fn is_solid(&self, id: PrimitiveId) -> bool {
         ior(self.scene, id).is_some() && self.shape(id).is_closed()
     }
@@ -162,7 +194,17 @@ impl<'s> Dielectrics<'s> {
     }
 }
 
+/// What parts two refractive indices.
+#[inline]
+fn interface(within: f64, without: f64, entering: bool) -> Boundary {
+    if within == without {
+        return Boundary::Nothing;
+    }
+    Boundary::Interface(if entering { within / without } else { without / within })
+}
+
 /// The refractive index of a primitive, if it is a dielectric.
+#[inline]
 fn ior(scene: &Scene, id: PrimitiveId) -> Option<f64> {
     match scene.material(&scene.primitives[id.0 as usize]) {
         Material::Dielectric { ior, .. } => Some(*ior),

@@ -173,13 +173,22 @@ impl<L: Lanes> Paths<L> {
         if free == 0 {
             return;
         }
-        queue.fill(l, view, jobs);
-        while free.count_ones() as usize > queue.waiting() {
-            free &= !(1 << (31 - free.leading_zeros()));
+        let mut taken = 0;
+        while free != 0 {
+            queue.fill(l, view, jobs);
+            if queue.waiting() == 0 {
+                break;
+            }
+            let mut next = free;
+            while next.count_ones() as usize > queue.waiting() {
+                next &= !(1 << next.ilog2());
+            }
+            queue.take(l, l.mask(next), next.count_ones() as usize, self);
+            free &= !next;
+            taken |= next;
         }
-        let fresh = l.mask(free);
+        let fresh = l.mask(taken);
         let (zero, one) = (V::all(l.f(0.0)), l.f(1.0));
-        queue.take(l, fresh, free.count_ones() as usize, self);
         self.alive = self.alive | fresh;
         self.rays.start = fresh.pick_word(l.u(NOWHERE), self.rays.start);
         self.throughput = V::pick(fresh, V::all(one), self.throughput);
@@ -194,7 +203,7 @@ impl<L: Lanes> Paths<L> {
             chains.forget(l, fresh);
         }
         if !tracer.dielectrics.is_empty() {
-            self.enter_media(tracer, fresh);
+            self.enter_media(l, tracer, fresh);
         }
     }
 
@@ -264,16 +273,17 @@ impl<L: Lanes> Paths<L> {
             return;
         }
 
+        let [direction, lobe, light] =
+            self.sampler.pairs(l, [Pair::Direction, Pair::Lobe, Pair::Light], self.bounces);
+
         // Gather light directly from one of the lights.
         let vertices = Vertices::new(l, &points, &hits, entering, self.rays.d);
         self.last_pdf = active.pick(l.f(f32::INFINITY), self.last_pdf);
         let rough = active & !bsdfs.are_specular(l);
         if rough.any() && !tracer.lights.is_empty() {
-            let receivers = Receivers { p: vertices.p, n: vertices.z, open: bsdfs.transmit(l) };
-            let total = tracer.lights.total(l, &receivers);
-            self.gather(l, tracer, &bsdfs, &vertices, &receivers, total, rough, observer);
-            self.last = receivers;
-            self.last_total = total;
+            self.last = Receivers { p: vertices.p, n: vertices.z, open: bsdfs.transmit(l) };
+            self.last_total = tracer.lights.total(l, &self.last);
+            self.gather(l, tracer, &bsdfs, &vertices, light, rough, observer);
         }
 
         // Look for light that comes by mirrors and glass.
@@ -290,7 +300,7 @@ impl<L: Lanes> Paths<L> {
         }
 
         // Scatter.
-        self.scatter(l, tracer, &bsdfs, &vertices, active, rough, observer);
+        self.scatter(l, tracer, &bsdfs, &vertices, (direction, lobe), active, rough, observer);
     }
 
     /// Accounts for the sky and the suns, shared with the other way to find them.
@@ -407,7 +417,7 @@ impl<L: Lanes> Paths<L> {
         passing
     }
 
-    /// Samples one light each, and adds what it gives by way of the vertices.
+    /// Samples one light each with two numbers, and adds what it gives by way of the vertices.
     #[expect(clippy::too_many_arguments, reason = "all of them is what direct light depends on")]
     #[inline(always)]
     fn gather<O: Observer>(
@@ -416,17 +426,16 @@ impl<L: Lanes> Paths<L> {
         tracer: &Tracer,
         bsdfs: &Bsdfs<L>,
         vertices: &Vertices<L>,
-        receivers: &Receivers<L>,
-        total: L::F,
+        u: [L::F; 2],
         rough: L::M,
         observer: &mut O,
     ) {
         let zero = l.f(0.0);
         let lights = &tracer.lights;
+        let receivers = &self.last;
         let [choice, _] =
             if lights.needs_choice() { self.sampler.pair(l, Pair::Choice, self.bounces) } else { [zero; 2] };
-        let (index, probability, part) = lights.choose(l, receivers, total, choice);
-        let u = self.sampler.pair(l, Pair::Light, self.bounces);
+        let (index, probability, part) = lights.choose(l, receivers, self.last_total, choice);
         let light = lights.sample(l, tracer, receivers, (index, part), u, rough);
         let wi = vertices.local(light.wi);
         let agrees = vertices.agree(l, tracer, wi, light.wi);
@@ -518,7 +527,7 @@ impl<L: Lanes> Paths<L> {
         }
     }
 
-    /// Sends the paths on in sampled directions.
+    /// Sends the paths on in directions drawn with two numbers each, the lobe with one more; a last one is for roulette.
     #[expect(clippy::too_many_arguments, reason = "all that scattering depends on")]
     #[inline(always)]
     fn scatter<O: Observer>(
@@ -527,15 +536,13 @@ impl<L: Lanes> Paths<L> {
         tracer: &Tracer,
         bsdfs: &Bsdfs<L>,
         vertices: &Vertices<L>,
+        (u, [lobe, chance]): ([L::F; 2], [L::F; 2]),
         active: L::M,
         rough: L::M,
         observer: &mut O,
     ) {
         let zero = l.f(0.0);
         let roulette = active & l.u(FIRST_ROULETTE - 2).below(self.bounces);
-        let plain = !(roulette | (active & !bsdfs.are(l, Kind::Diffuse))).any();
-        let [lobe, chance] = if plain { [zero; 2] } else { self.sampler.pair(l, Pair::Lobe, self.bounces) };
-        let u = self.sampler.pair(l, Pair::Direction, self.bounces);
         let mut samples = bsdfs.sample(l, &tracer.materials.coats, vertices.wo, lobe, u, active);
         if O::WATCHES {
             for lane in samples.some.lanes() {
@@ -616,11 +623,19 @@ impl<L: Lanes> Paths<L> {
 
     /// Finds what fresh paths are inside of.
     #[inline(always)]
-    fn enter_media(&mut self, tracer: &Tracer, fresh: L::M) {
+    fn enter_media(&mut self, l: L, tracer: &Tracer, fresh: L::M) {
         let camera = &tracer.scene.camera;
         let pinhole = camera.lens_radius == 0.0 && camera.projection == Projection::Perspective;
+        let media = &mut self.media;
+        if tracer.dielectrics.are_far_from_camera() || pinhole && media.start.is_empty() {
+            // Only what the paths before were inside of has to be forgotten.
+            for lane in (fresh & l.mask(media.any)).lanes() {
+                media.inside[lane].clone_from(&media.start);
+                media.moved(tracer, lane);
+            }
+            return;
+        }
         for lane in fresh.lanes() {
-            let media = &mut self.media;
             if pinhole {
                 media.inside[lane].clone_from(&media.start);
             } else {

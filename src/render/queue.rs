@@ -67,8 +67,8 @@ impl<'a> View<'a> {
     }
 }
 
-/// Numbers of a queue: rays for all lanes twice, and as many again so that all lanes can be read at its end.
-const ROOM: usize = 3 * MOST;
+/// Numbers of a queue: rays for all lanes, and as many again so that all lanes can be read from its last.
+const ROOM: usize = 2 * MOST;
 
 /// Camera rays that are ready.
 pub struct Queue<L: Lanes> {
@@ -98,19 +98,12 @@ impl<L: Lanes> Queue<L> {
         self.to - self.from
     }
 
-    /// Makes rays if none are ready.
+    /// Makes rays for all lanes if none are ready.
     #[inline(always)]
     pub fn fill(&mut self, l: L, view: &View, jobs: &mut dyn Jobs) {
-        if self.waiting() >= L::N || self.exhausted {
+        if self.waiting() > 0 || self.exhausted {
             return;
         }
-        for column in &mut self.reals {
-            column.copy_within(self.from..self.to, 0);
-        }
-        for column in &mut self.words {
-            column.copy_within(self.from..self.to, 0);
-        }
-        (self.from, self.to) = (0, self.waiting());
         let mut columns = [[0; MOST]; 3];
         let mut count = 0;
         while count < L::N {
@@ -121,7 +114,7 @@ impl<L: Lanes> Queue<L> {
             columns[0][count] = job.x;
             columns[1][count] = job.y;
             columns[2][count] = job.sample;
-            self.words[3][self.to + count] = job.pixel;
+            self.words[3][count] = job.pixel;
             count += 1;
         }
         let [x, y, sample] =
@@ -130,12 +123,12 @@ impl<L: Lanes> Queue<L> {
         let rays = view.eye.rays(l, x, y, &sampler);
         let reals = [rays.o.x, rays.o.y, rays.o.z, rays.d.x, rays.d.y, rays.d.z, rays.weight];
         for (column, real) in self.reals.iter_mut().zip(reals) {
-            real.store(&mut column[self.to..]);
+            real.store(column);
         }
         for (column, word) in self.words.iter_mut().zip([sampler.key[0], sampler.key[1], sampler.index]) {
-            word.store(&mut column[self.to..]);
+            word.store(column);
         }
-        self.to += count;
+        (self.from, self.to) = (0, count);
     }
 
     /// Hands out rays to the lanes of a mask, of which there are so many.

@@ -31,6 +31,7 @@ pub enum Pair {
 
 impl Pair {
     /// Its index at the vertex with none before it.
+    #[inline(always)]
     fn first(self) -> u32 {
         match self {
             Pair::Film => 0,
@@ -90,24 +91,49 @@ impl<L: Lanes> Sampler<L> {
     /// Two numbers in (0, 1), at the vertex that so many others went before.
     #[inline(always)]
     pub fn pair(&self, l: L, pair: Pair, vertex: L::U) -> [L::F; 2] {
+        let [numbers] = self.pairs(l, [pair], vertex);
+        numbers
+    }
+
+    /// Several pairs at a vertex. Each is a long chain of steps that wait for each other, so together they take not much
+    /// longer than one.
+    #[inline(always)]
+    pub fn pairs<const N: usize>(&self, l: L, pairs: [Pair; N], vertex: L::U) -> [[L::F; 2]; N] {
         apart(
             l,
             #[inline(always)]
-            || self.pair_here(l, pair, vertex),
+            || self.pairs_here(l, pairs, vertex),
         )
     }
 
     #[inline(always)]
-    fn pair_here(&self, l: L, pair: Pair, vertex: L::U) -> [L::F; 2] {
-        let dimension = vertex * l.u(EACH) + l.u(pair.first());
-        let hash = mix(l, self.key[0] + dimension * l.u(GOLDEN)) ^ self.key[1];
-        let shuffle = mix(l, hash);
-        let scramble = mix(l, shuffle ^ self.key[0]);
-        let index = owen(l, self.index, shuffle).reversed();
-        // Sobol's first dimension is the index with its digits reversed, as Owen's scrambling wants it reversed again.
-        let x = owen(l, index, scramble).reversed();
-        let y = owen(l, pascal(l, index), mix(l, scramble)).reversed();
-        [unit(l, x), unit(l, y)]
+    fn pairs_here<const N: usize>(&self, l: L, pairs: [Pair; N], vertex: L::U) -> [[L::F; 2]; N] {
+        // Step by step for all pairs, so that each step has others to do while it waits.
+        let base = self.key[0] + vertex * l.u(EACH.wrapping_mul(GOLDEN));
+        let mut hash = [base; N];
+        for (hash, pair) in hash.iter_mut().zip(pairs) {
+            *hash = mix(l, *hash + l.u(pair.first().wrapping_mul(GOLDEN))) ^ self.key[1];
+        }
+        let mut shuffle = hash;
+        for shuffle in &mut shuffle {
+            *shuffle = mix(l, *shuffle);
+        }
+        let mut scramble = shuffle;
+        for scramble in &mut scramble {
+            *scramble = mix(l, *scramble ^ self.key[0]);
+        }
+        let mut index = shuffle;
+        for index in &mut index {
+            *index = owen(l, self.index, *index).reversed();
+        }
+        let mut numbers = [[l.f(0.0); 2]; N];
+        for i in 0..N {
+            // Sobol's first dimension is the index with its digits reversed, as Owen's scrambling wants it reversed again.
+            let x = owen(l, index[i], scramble[i]).reversed();
+            let y = owen(l, pascal(l, index[i]), mix(l, scramble[i])).reversed();
+            numbers[i] = [unit(l, x), unit(l, y)];
+        }
+        numbers
     }
 }
 

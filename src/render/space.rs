@@ -33,22 +33,26 @@ impl Space {
     }
 
     /// Metres in a unit of length.
+    #[inline]
     pub fn unit(&self) -> f64 {
         self.unit
     }
 
     /// A point.
+    #[inline]
     pub fn point(&self, p: DVec3) -> DVec3 {
         (p - self.origin) / self.unit
     }
 
     /// A point of the world.
+    #[inline]
     pub fn world<L: Lanes>(&self, p: V<L>, lane: usize) -> DVec3 {
         double(p, lane) * self.unit + self.origin
     }
 }
 
 /// One lane in double precision.
+#[inline]
 pub fn double<L: Lanes>(v: V<L>, lane: usize) -> DVec3 {
     let [x, y, z] = v.get(lane);
     DVec3::new(f64::from(x), f64::from(y), f64::from(z))

@@ -5,7 +5,7 @@
 
 use super::accel::{Item, Tree};
 use super::exact::{Exact, SurfacePoint};
-use super::lanes::{Float, Lanes, MOST, Mask, One, Word, apart};
+use super::lanes::{Float, Lanes, Mask, One, Table, Word, apart};
 use super::shape::ball::Ball;
 use super::shape::flat::Flat;
 use super::shape::giant::Giant;
@@ -40,8 +40,8 @@ pub struct Surfaces<'s> {
     /// Which slots bound a solid.
     closed: Vec<bool>,
     /// Each slot's height function ½κ|y|² + n·y + h about its anchor, y = p − anchor: anchor and κ, n and h.
-    bends: Vec<[f32; 4]>,
-    leans: Vec<[f32; 4]>,
+    bends: Table,
+    leans: Table,
 }
 
 /// About what a surface takes in the tables.
@@ -99,9 +99,10 @@ impl<'s> Surfaces<'s> {
             tree: None,
             any_smooth: false,
             closed: Vec::new(),
-            bends: Vec::new(),
-            leans: Vec::new(),
+            bends: Table::default(),
+            leans: Table::default(),
         };
+        let (mut bends, mut leans) = (Vec::new(), Vec::new());
         for (slot, (kind, id)) in (0..).zip(order) {
             surfaces.slots[id.0 as usize] = slot;
             let primitive = &scene.primitives[id.0 as usize];
@@ -111,8 +112,11 @@ impl<'s> Surfaces<'s> {
                 glows: matches!(material, Material::Emitter { .. }),
                 opaque: !matches!(material, Material::Dielectric { .. }),
             };
-            surfaces.push(kind, &primitive.shape, nature, space);
+            let (bend, lean) = surfaces.push(kind, &primitive.shape, nature, space);
+            bends.push(bend);
+            leans.push(lean);
         }
+        (surfaces.bends, surfaces.leans) = (Table::new(bends), Table::new(leans));
         surfaces.plant(scene, space);
         surfaces
     }
@@ -142,8 +146,9 @@ impl<'s> Surfaces<'s> {
         }
     }
 
-    fn push(&mut self, kind: Kind, shape: &Shape, nature: Nature, space: &Space) {
-        let (bend, lean) = match *shape {
+    /// Adds a surface; its height function, see [`Surfaces::bends`].
+    fn push(&mut self, kind: Kind, shape: &Shape, nature: Nature, space: &Space) -> ([f32; 4], [f32; 4]) {
+        match *shape {
             Shape::Plane { point, normal } => {
                 let flat = Flat::new(space.point(point), normal, nature);
                 self.flats.push(flat);
@@ -171,22 +176,23 @@ impl<'s> Surfaces<'s> {
                 ([0.0; 4], [0.0, 0.0, 1.0, 0.0])
             }
             Shape::Disk(_) | Shape::Box(_) => ([0.0; 4], [0.0, 0.0, 1.0, 0.0]),
-        };
-        self.bends.push(bend);
-        self.leans.push(lean);
+        }
     }
 
     /// The primitive in a slot.
+    #[inline]
     pub fn primitive(&self, slot: u32) -> PrimitiveId {
         self.primitives[slot as usize]
     }
 
     /// The slot of a primitive.
+    #[inline]
     pub fn slot(&self, primitive: PrimitiveId) -> u32 {
         self.slots[primitive.0 as usize]
     }
 
     /// Whether the surface in a slot bounds a solid.
+    #[inline]
     pub fn is_closed(&self, slot: u32) -> bool {
         self.closed[slot as usize]
     }
@@ -348,16 +354,19 @@ impl<'s> Surfaces<'s> {
         }
     }
 
+    #[inline]
     fn is_quadric(&self, slot: u32) -> bool {
         (self.starts[2]..self.starts[3]).contains(&slot)
     }
 
     /// What is met in double precision.
+    #[inline]
     pub fn exact(&self) -> &Exact<'s> {
         &self.exact
     }
 
     /// Whether any surface is shaded with another normal than its own.
+    #[inline]
     pub fn any_smooth(&self) -> bool {
         self.any_smooth
     }
@@ -376,10 +385,8 @@ impl<'s> Surfaces<'s> {
     fn points_here<L: Lanes>(&self, l: L, rays: &Rays<L>, hits: &Hits<L>, met: L::M) -> Points<L> {
         let near = rays.o + rays.d * met.pick(hits.t, l.f(0.0));
         let slots = met.pick_word(hits.place >> FACE_BITS, l.u(0));
-        let mut rows = [0; MOST];
-        slots.store(&mut rows);
-        let [ax, ay, az, curvature] = l.gather(&self.bends, &rows);
-        let [nx, ny, nz, height] = l.gather(&self.leans, &rows);
+        let [ax, ay, az, curvature] = l.look_up(&self.bends, slots);
+        let [nx, ny, nz, height] = l.look_up(&self.leans, slots);
         let (anchor, lean) = (V::new(ax, ay, az), V::new(nx, ny, nz));
         let y = near - anchor;
         let slope = lean + y * curvature;
@@ -408,13 +415,11 @@ impl<'s> Surfaces<'s> {
         met: L::M,
     ) -> [V<L>; 2] {
         let slots = met.pick_word(hits.place >> FACE_BITS, l.u(0));
-        let mut rows = [0; MOST];
-        slots.store(&mut rows);
-        let [.., curvature] = l.gather(&self.bends, &rows);
+        let [.., curvature] = l.look_up(&self.bends, slots);
         let mut changes = [steps[0] * curvature, steps[1] * curvature];
         let bent = met & !slots.below(l.u(self.starts[2])) & slots.below(l.u(self.starts[3]));
         for lane in bent.lanes() {
-            let quadric = &self.quadrics[rows[lane] as usize - self.starts[2] as usize];
+            let quadric = &self.quadrics[(slots.get(lane) - self.starts[2]) as usize];
             let face = decode(hits.place.get(lane), hits.detail.get(lane));
             let [p, n] = [points.p, points.n].map(|v| V::splat(One, v.get(lane)));
             let steps = steps.map(|step| V::splat(One, step.get(lane)));

@@ -9,10 +9,12 @@
 //! was compiled for the processor's instructions, see [`Lanes::run`].
 
 mod one;
+mod table;
 mod vectors;
 
 pub use one::One;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Shl, Shr, Sub};
+pub use table::Table;
 pub use vectors::{Eight, Four, Sixteen};
 
 /// The greatest number of lanes.
@@ -44,7 +46,7 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     /// The first words of a slice, which has at least as many.
     fn load_words(self, from: &[u32]) -> Self::U;
     /// The columns of rows of a table, a row a lane.
-    fn gather(self, table: &[[f32; 4]], rows: &[u32; MOST]) -> [Self::F; 4];
+    fn look_up(self, table: &Table, rows: Self::U) -> [Self::F; 4];
     /// Calls something in a function of its own that is compiled for the instructions.
     fn run<R>(self, f: impl FnOnce() -> R) -> R;
 }

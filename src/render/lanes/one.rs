@@ -1,6 +1,6 @@
 //! A single lane.
 
-use super::{Float, Lanes, MOST, Mask, Word};
+use super::{Float, Lanes, Mask, Table, Word};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Mul, Shl, Shr, Sub};
 
 /// A single lane without vector instructions.
@@ -19,8 +19,8 @@ impl Lanes for One {
         self
     }
     #[inline(always)]
-    fn gather(self, table: &[[f32; 4]], rows: &[u32; MOST]) -> [f32; 4] {
-        table[rows[0] as usize]
+    fn look_up(self, table: &Table, Scalar(row): Scalar) -> [f32; 4] {
+        table.rows[row as usize]
     }
     #[inline(always)]
     fn f(self, value: f32) -> f32 {

@@ -1,6 +1,6 @@
 //! Lanes on vector instructions.
 
-use super::{Float, Lanes, MOST, Mask, Word};
+use super::{Float, Lanes, MOST, Mask, Table, Word};
 use fearless_simd::prelude::*;
 use fearless_simd::{
     f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, mask32x4, mask32x8, mask32x16, u8x16, u8x32, u8x64, u32x4,
@@ -8,7 +8,7 @@ use fearless_simd::{
 };
 
 macro_rules! vectors {
-    ($(#[$doc:meta])* $name:ident, $n:literal, $group:ident, $gather:ident, $float:ident, $word:ident, $int:ident, $byte:ident, $bytes:literal, $mask:ident) => {
+    ($(#[$doc:meta])* $name:ident, $n:literal, $group:ident, $look_up:ident, $float:ident, $word:ident, $int:ident, $byte:ident, $bytes:literal, $mask:ident) => {
         $(#[$doc])*
         #[derive(Clone, Copy)]
         pub struct $name<S>(pub S);
@@ -25,8 +25,8 @@ macro_rules! vectors {
                 $group(self.0)
             }
             #[inline(always)]
-            fn gather(self, table: &[[f32; 4]], rows: &[u32; MOST]) -> [$float<S>; 4] {
-                $gather(self.0, table, rows)
+            fn look_up(self, table: &Table, rows: $word<S>) -> [$float<S>; 4] {
+                $look_up(self.0, table, rows)
             }
             #[inline(always)]
             fn f(self, value: f32) -> $float<S> {
@@ -191,48 +191,65 @@ macro_rules! vectors {
 
 vectors! {
     /// Four lanes: a register of SSE or NEON.
-    Four, 4, Four, gather_four, f32x4, u32x4, i32x4, u8x16, 16, mask32x4
+    Four, 4, Four, look_up_four, f32x4, u32x4, i32x4, u8x16, 16, mask32x4
 }
 vectors! {
     /// Eight lanes: a register of AVX2.
-    Eight, 8, Eight, gather_eight, f32x8, u32x8, i32x8, u8x32, 32, mask32x8
+    Eight, 8, Eight, look_up_eight, f32x8, u32x8, i32x8, u8x32, 32, mask32x8
 }
 vectors! {
     /// Sixteen lanes: a register of AVX-512, or two of AVX2.
-    Sixteen, 16, Eight, gather_sixteen, f32x16, u32x16, i32x16, u8x64, 64, mask32x16
+    Sixteen, 16, Eight, look_up_sixteen, f32x16, u32x16, i32x16, u8x64, 64, mask32x16
 }
 
 #[inline(always)]
-fn gather_four<S: Simd>(simd: S, table: &[[f32; 4]], rows: &[u32; MOST]) -> [f32x4<S>; 4] {
-    gather_from(simd, table, rows, 0)
+fn look_up_four<S: Simd>(simd: S, table: &Table, rows: u32x4<S>) -> [f32x4<S>; 4] {
+    let mut at = [0; MOST];
+    rows.store_slice(&mut at[..4]);
+    gather_four(simd, &table.rows, &at, 0)
 }
 
-/// Four rows of a table as columns.
 #[inline(always)]
-fn gather_from<S: Simd>(simd: S, table: &[[f32; 4]], rows: &[u32; MOST], from: usize) -> [f32x4<S>; 4] {
+fn look_up_eight<S: Simd>(simd: S, table: &Table, rows: u32x8<S>) -> [f32x8<S>; 4] {
+    let mut at = [0; MOST];
+    rows.store_slice(&mut at[..8]);
+    gather_eight(simd, &table.rows, &at, 0)
+}
+
+#[inline(always)]
+fn look_up_sixteen<S: Simd>(simd: S, table: &Table, rows: u32x16<S>) -> [f32x16<S>; 4] {
+    if let Some(columns) = &table.columns {
+        // The places of the four bytes of a number in its column.
+        let bytes: u8x64<S> = (rows * 0x0404_0404 + 0x0302_0100).bitcast();
+        let [x, y, z, w] = columns.as_ref();
+        return [
+            f32x16::from_slice(simd, x).swizzle_dyn(bytes),
+            f32x16::from_slice(simd, y).swizzle_dyn(bytes),
+            f32x16::from_slice(simd, z).swizzle_dyn(bytes),
+            f32x16::from_slice(simd, w).swizzle_dyn(bytes),
+        ];
+    }
+    let mut at = [0; MOST];
+    rows.store_slice(&mut at);
+    let [a, b, c, d] = gather_eight(simd, &table.rows, &at, 0);
+    let [e, f, g, h] = gather_eight(simd, &table.rows, &at, 8);
+    [a.combine(e), b.combine(f), c.combine(g), d.combine(h)]
+}
+
+/// Four rows as columns.
+#[inline(always)]
+fn gather_four<S: Simd>(simd: S, rows: &[[f32; 4]], at: &[u32; MOST], from: usize) -> [f32x4<S>; 4] {
     let mut square = [0.0; 16];
-    square[0..4].copy_from_slice(&table[rows[from] as usize]);
-    square[4..8].copy_from_slice(&table[rows[from + 1] as usize]);
-    square[8..12].copy_from_slice(&table[rows[from + 2] as usize]);
-    square[12..16].copy_from_slice(&table[rows[from + 3] as usize]);
+    square[0..4].copy_from_slice(&rows[at[from] as usize]);
+    square[4..8].copy_from_slice(&rows[at[from + 1] as usize]);
+    square[8..12].copy_from_slice(&rows[at[from + 2] as usize]);
+    square[12..16].copy_from_slice(&rows[at[from + 3] as usize]);
     simd.load_four_interleaved_f32x4(&square)
 }
 
 #[inline(always)]
-fn gather_eight<S: Simd>(simd: S, table: &[[f32; 4]], rows: &[u32; MOST]) -> [f32x8<S>; 4] {
-    gather_pair(simd, table, rows, 0)
-}
-
-#[inline(always)]
-fn gather_sixteen<S: Simd>(simd: S, table: &[[f32; 4]], rows: &[u32; MOST]) -> [f32x16<S>; 4] {
-    let [a, b, c, d] = gather_pair(simd, table, rows, 0);
-    let [e, f, g, h] = gather_pair(simd, table, rows, 8);
-    [a.combine(e), b.combine(f), c.combine(g), d.combine(h)]
-}
-
-#[inline(always)]
-fn gather_pair<S: Simd>(simd: S, table: &[[f32; 4]], rows: &[u32; MOST], from: usize) -> [f32x8<S>; 4] {
-    let [a, b, c, d] = gather_from(simd, table, rows, from);
-    let [e, f, g, h] = gather_from(simd, table, rows, from + 4);
+fn gather_eight<S: Simd>(simd: S, rows: &[[f32; 4]], at: &[u32; MOST], from: usize) -> [f32x8<S>; 4] {
+    let [a, b, c, d] = gather_four(simd, rows, at, from);
+    let [e, f, g, h] = gather_four(simd, rows, at, from + 4);
     [a.combine(e), b.combine(f), c.combine(g), d.combine(h)]
 }

@@ -187,6 +187,7 @@ impl Lights {
     }
 
     /// Whether there is nothing to sample.
+    #[inline]
     pub fn is_empty(&self) -> bool {
         self.lamps.is_empty()
     }
@@ -211,21 +212,25 @@ impl Lights {
     }
 
     /// Whether there is more than one, or one of several parts.
+    #[inline]
     pub fn needs_choice(&self) -> bool {
         self.lamps.len() > 1 || self.lamps.iter().any(|lamp| matches!(lamp.kind, Kind::Surface(_)))
     }
 
     /// One of the lights.
+    #[inline]
     pub fn lamp(&self, index: u32) -> &Lamp {
         &self.lamps[index as usize]
     }
 
     /// The light that the surface in a slot is.
+    #[inline]
     pub fn of_slot(&self, slot: u32) -> Option<u32> {
         self.by_slot.binary_search_by_key(&slot, |entry| entry.0).ok().map(|at| self.by_slot[at].1)
     }
 
     /// Those that are seen where a ray leaves the scene.
+    #[inline]
     pub fn beyond(&self) -> &[u32] {
         &self.beyond
     }

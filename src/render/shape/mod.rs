@@ -91,6 +91,7 @@ const CODES: [u32; 4] = [0, 1, 2, 3];
 const WALL: u32 = 1 << 31;
 
 /// The place of a face of a surface, and the detail that tells the face where the place does not.
+#[inline(always)]
 pub const fn encode(slot: u32, face: Face) -> (u32, u32) {
     let [side, low, high, other] = CODES;
     let (code, detail) = match face {
@@ -104,16 +105,19 @@ pub const fn encode(slot: u32, face: Face) -> (u32, u32) {
 }
 
 /// The place of a face of the surface in a slot.
+#[inline(always)]
 pub const fn place(slot: u32, face: Face) -> u32 {
     encode(slot, face).0
 }
 
 /// The slot of a place.
+#[inline(always)]
 pub const fn slot(place: u32) -> u32 {
     place >> FACE_BITS
 }
 
 /// The face of a place.
+#[inline(always)]
 pub const fn decode(place: u32, detail: u32) -> Face {
     match place & ((1 << FACE_BITS) - 1) {
         0 => Face::Side,
@@ -246,11 +250,7 @@ fn first_ahead<L: Lanes>(l: L, b: L::F, c: L::F, root: L::F, inverse: L::F) -> R
     let away = c.le(zero) & b.le(zero);
     let behind = zero.le(c) & zero.le(b);
     let far = away & !behind;
-    if far.any() {
-        let over = behind.pick(-w, far.pick(w * inverse, c.magnitude()));
-        return Ratios { over, under: far.pick(l.f(1.0), w) };
-    }
-    Ratios { over: behind.pick(zero, c.magnitude()), under: w }
+    Ratios { over: behind.pick(-w, far.pick(w * inverse, c.magnitude())), under: far.pick(l.f(1.0), w) }
 }
 
 /// A height over an opaque surface of which so much may be due to rounding: what is below by no more than that is on it.
