@@ -97,6 +97,27 @@ pub(super) struct Vertices<L: Lanes> {
     entering: L::M,
 }
 
+/// What is drawn at every vertex.
+struct Numbers<L: Lanes> {
+    direction: [L::F; 2],
+    lobe: [L::F; 2],
+    light: [L::F; 2],
+    seed: [L::F; 2],
+}
+
+impl<L: Lanes> Numbers<L> {
+    #[inline(always)]
+    fn draw(l: L, sampler: &Sampler<L>, vertex: L::U, looks: bool) -> Numbers<L> {
+        if looks {
+            let pairs = [Pair::Direction, Pair::Lobe, Pair::Light, Pair::Seed];
+            let [direction, lobe, light, seed] = sampler.pairs(l, pairs, vertex);
+            return Numbers { direction, lobe, light, seed };
+        }
+        let [direction, lobe, light] = sampler.pairs(l, [Pair::Direction, Pair::Lobe, Pair::Light], vertex);
+        Numbers { direction, lobe, light, seed: [l.f(0.0); 2] }
+    }
+}
+
 /// Traces all paths that there are to do.
 pub(super) fn trace<L: Lanes, O: Observer>(
     l: L,
@@ -273,8 +294,7 @@ impl<L: Lanes> Paths<L> {
             return;
         }
 
-        let [direction, lobe, light] =
-            self.sampler.pairs(l, [Pair::Direction, Pair::Lobe, Pair::Light], self.bounces);
+        let numbers = Numbers::draw(l, &self.sampler, self.bounces, self.chains.is_some());
 
         // Gather light directly from one of the lights.
         let vertices = Vertices::new(l, &points, &hits, entering, self.rays.d);
@@ -283,7 +303,7 @@ impl<L: Lanes> Paths<L> {
         if rough.any() && !tracer.lights.is_empty() {
             self.last = Receivers { p: vertices.p, n: vertices.z, open: bsdfs.transmit(l) };
             self.last_total = tracer.lights.total(l, &self.last);
-            self.gather(l, tracer, &bsdfs, &vertices, light, rough, observer);
+            self.gather(l, tracer, &bsdfs, &vertices, numbers.light, rough, observer);
         }
 
         // Look for light that comes by mirrors and glass.
@@ -296,11 +316,20 @@ impl<L: Lanes> Paths<L> {
                 insides: &self.media.inside,
                 wet: self.media.any,
             };
-            chains.look(l, tracer, &here, &self.sampler, rough & !bsdfs.transmit(l));
+            chains.look(l, tracer, &here, numbers.seed, &self.sampler, rough & !bsdfs.transmit(l));
         }
 
         // Scatter.
-        self.scatter(l, tracer, &bsdfs, &vertices, (direction, lobe), active, rough, observer);
+        self.scatter(
+            l,
+            tracer,
+            &bsdfs,
+            &vertices,
+            (numbers.direction, numbers.lobe),
+            active,
+            rough,
+            observer,
+        );
     }
 
     /// Accounts for the sky and the suns, shared with the other way to find them.

@@ -274,6 +274,7 @@ impl Scene {
     }
 
     /// The material of a primitive.
+    #[inline]
     pub fn material(&self, primitive: &Primitive) -> &Material {
         &self.materials[primitive.material.0 as usize]
     }

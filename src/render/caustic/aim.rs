@@ -196,6 +196,7 @@ fn aim_here<L: Lanes>(
 
 impl<L: Lanes> Probes<L> {
     /// One of them.
+    #[inline]
     pub fn lane(&self, lane: usize) -> Probes<One> {
         let pair = |[a, b]: [L::F; 2]| [a.get(lane), b.get(lane)];
         Probes {
@@ -233,12 +234,14 @@ const DENSITIES: std::ops::Range<f32> = 1e-6..1e24;
 
 impl Lobe {
     /// The lobe about a probe, for a lamp of that size.
+    #[inline]
     pub fn new(probe: Probes<One>, size: f32) -> Option<Lobe> {
         let density = probe.spread() / (size * size);
         (probe.some && DENSITIES.contains(&density)).then_some(Lobe { probe, size })
     }
 
     /// Draws a direction.
+    #[inline]
     pub fn sample(&self, choice: f32, u: [f32; 2]) -> V<One> {
         let place = warp::disc(One, u);
         let scale = if choice < TAIL {
@@ -251,6 +254,7 @@ impl Lobe {
     }
 
     /// Density of [`Lobe::sample`] in solid angle.
+    #[inline]
     pub fn pdf(&self, w: V<One>) -> f32 {
         let along = w.dot(self.probe.w);
         if along <= 0.0 {

@@ -78,19 +78,20 @@ impl Caustics {
     }
 
     /// Whether there are none.
+    #[inline]
     pub fn is_empty(&self) -> bool {
         self.seeds.is_none()
     }
 
     /// What leads to light at a place, on the side of a normal; none if nothing does.
+    #[inline]
     fn hope(&self, p: V<One>, n: V<One>) -> Option<Hope<'_>> {
         let seeds = self.seeds.as_ref()?;
-        let cell = seeds.around(p.get(0))?;
-        let total = seeds.of(cell).iter().map(|seed| seed.weight(n)).sum::<f32>();
-        (total > 0.0).then_some(Hope { seeds, cell, n, total })
+        Hope::within(seeds, seeds.around(p.get(0))?, n)
     }
 
     /// The goal that a lamp is, if rays find it by chance too.
+    #[inline]
     fn goal_of(&self, lamp: u32) -> Option<u32> {
         let goal = *self.goal_of.get(lamp as usize)?;
         goal.filter(|&goal| !self.goals[goal as usize].target.is_point())
@@ -108,7 +109,18 @@ struct Hope<'c> {
 }
 
 impl<'c> Hope<'c> {
+    /// The seeds of a cell that may lead to light on the side of a normal, if there are any.
+    #[inline]
+    fn within(seeds: &'c Seeds, cell: Cell, n: V<One>) -> Option<Hope<'c>> {
+        let mut total = 0.0;
+        for seed in seeds.of(cell) {
+            total += seed.weight(n);
+        }
+        (total > 0.0).then_some(Hope { seeds, cell, n, total })
+    }
+
     /// The seeds that lead to a lamp by a certain way, by their place in the cell, each with the probability to be chosen.
+    #[inline]
     fn by(self, ways: Ways, goal: u32) -> impl Iterator<Item = (u32, &'c Seed, f32)> {
         let seeds = (0..).zip(self.seeds.of(self.cell));
         let led = seeds.filter(move |(_, seed)| seed.ways == ways && seed.goal == goal);
@@ -117,6 +129,7 @@ impl<'c> Hope<'c> {
     }
 
     /// Chooses a seed, by its place in the cell; the number is made uniform again for further use.
+    #[inline]
     fn choose(self, u: f32) -> Option<(u32, &'c Seed, f32)> {
         let mut left = u * self.total;
         let mut chosen = None;

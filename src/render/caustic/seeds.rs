@@ -26,6 +26,7 @@ pub struct Seed {
 
 impl Seed {
     /// What it is chosen by: nothing where it leads behind a surface of that normal.
+    #[inline]
     pub fn weight(&self, n: V<One>) -> f32 {
         if V::splat(One, self.w).dot(n) > LEAST_RISE { self.irradiance } else { 0.0 }
     }
@@ -140,14 +141,18 @@ impl Seeds {
     }
 
     /// The greatest effort of any cell.
+    #[inline]
     pub fn most_effort(&self) -> f32 {
         self.most_effort
     }
 
     /// The cell around a point.
+    #[inline]
     pub fn around(&self, p: [f32; 3]) -> Option<Cell> {
-        if !(0..3).all(|i| self.low[i] <= p[i] && p[i] <= self.high[i]) {
-            return None;
+        for i in 0..3 {
+            if !(self.low[i] <= p[i] && p[i] <= self.high[i]) {
+                return None;
+            }
         }
         let mut index = 0;
         loop {
@@ -161,12 +166,14 @@ impl Seeds {
     }
 
     /// The seeds of a cell.
+    #[inline]
     pub fn of(&self, cell: Cell) -> &[Seed] {
         &self.seeds[cell.first as usize..(cell.first + cell.count) as usize]
     }
 
     /// Where to begin to aim a seed from a point: at the last surface of the nearest photon's chain, or in the
     /// direction that it came from.
+    #[inline]
     pub fn towards(&self, seed: &Seed, p: V<One>) -> [V<One>; 2] {
         let tracks = &self.tracks[seed.first as usize..(seed.first + seed.count) as usize];
         let mut best = (f32::INFINITY, tracks[0]);

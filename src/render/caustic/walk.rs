@@ -1,5 +1,6 @@
 //! What a path remembers of its way, so that it can tell a caustic when it meets one, and where it looks for light.
 
+use super::Hope;
 use super::chain::{MOST_EVENTS, Ways, WaysOf};
 use super::looks::{Look, Looks, Scattering, Wanted};
 use super::search;
@@ -109,12 +110,19 @@ impl<L: Lanes> Chains<L> {
         }
     }
 
-    /// Notes places to look for light from, now and then.
+    /// Notes places to look for light from, now and then: by two numbers, [`Pair::Seed`].
     #[inline(always)]
-    pub fn look(&mut self, l: L, tracer: &Tracer, here: &Here<L>, sampler: &Sampler<L>, wanted: L::M) {
+    pub fn look(
+        &mut self,
+        l: L,
+        tracer: &Tracer,
+        here: &Here<L>,
+        [chance, choice]: [L::F; 2],
+        sampler: &Sampler<L>,
+        wanted: L::M,
+    ) {
         let Some(seeds) = &tracer.caustics.seeds else { return };
         let carried = here.throughput.luminance().lesser(l.f(1.0));
-        let [chance, choice] = sampler.pair(l, Pair::Seed, here.bounces[0]);
         if tracer.caustics.search.is_some() {
             let searched = wanted & (l.f(1.0) - carried * search::EFFORT).lt(chance);
             for lane in searched.lanes() {
@@ -129,11 +137,12 @@ impl<L: Lanes> Chains<L> {
         for lane in wanted.lanes() {
             let vertices = here.vertices;
             let (p, n) = (one(vertices.p, lane), one(vertices.z, lane));
-            let Some(hope) = tracer.caustics.hope(p, n) else { continue };
-            let effort = carried.get(lane) * hope.cell.effort;
+            let Some(cell) = seeds.around(p.get(0)) else { continue };
+            let effort = carried.get(lane) * cell.effort;
             if chance.get(lane) >= effort {
                 continue;
             }
+            let Some(hope) = Hope::within(seeds, cell, n) else { continue };
             let Some((index, seed, rest)) = hope.choose(choice.get(lane)) else { continue };
             let [bounces, rough_bounces] = here.bounces.map(|count| count.get(lane) + 1);
             let events = seed.ways.count();
