@@ -79,11 +79,11 @@ impl Pixel {
     pub fn add(&mut self, radiance: Rgb, scale: f64) {
         debug_assert!(radiance.is_finite(), "a path carries {radiance}");
         let fixed = |v: f64| nearest((v * scale).clamp(-MOST_FIXED, MOST_FIXED));
-        let fixed = radiance.to_array().map(fixed);
-        for (sum, v) in self.sum.iter_mut().zip(fixed) {
-            *sum += v;
-        }
-        let value = Rgb::from_array(fixed.map(|v| v as f64));
+        let [r, g, b] = [fixed(radiance.x), fixed(radiance.y), fixed(radiance.z)];
+        self.sum[0] += r;
+        self.sum[1] += g;
+        self.sum[2] += b;
+        let value = Rgb::new(r as f64, g as f64, b as f64);
         // Rounded, not cut: a sum of squares that is too small on average would hide the noise of even pixels.
         let magnitude = u128::from(nearest(luminance(value).abs()) as u64);
         self.luminance_squares += magnitude * magnitude;

@@ -148,7 +148,9 @@ impl<'s> Dielectrics<'s> {
             // The common case, with nothing to choose between.
             inside.medium = entering.then_some(id);
             inside.solids.clear();
-            inside.solids.extend(inside.medium);
+            if entering {
+                inside.solids.push(id);
+            }
             return;
         }
         match (entering, inside.solids.binary_search(&id)) {

@@ -421,8 +421,8 @@ impl<'s> Surfaces<'s> {
         for lane in bent.lanes() {
             let quadric = &self.quadrics[(slots.get(lane) - self.starts[2]) as usize];
             let face = decode(hits.place.get(lane), hits.detail.get(lane));
-            let [p, n] = [points.p, points.n].map(|v| V::splat(One, v.get(lane)));
-            let steps = steps.map(|step| V::splat(One, step.get(lane)));
+            let (p, n) = (V::splat(One, points.p.get(lane)), V::splat(One, points.n.get(lane)));
+            let steps = [V::splat(One, steps[0].get(lane)), V::splat(One, steps[1].get(lane))];
             let bent = quadric.bend(&Points { p, n, shading: n }, face, steps);
             changes[0].set(lane, bent[0].get(0));
             changes[1].set(lane, bent[1].get(0));

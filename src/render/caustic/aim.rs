@@ -72,13 +72,11 @@ pub fn missed<L: Lanes>(l: L, beams: &Beams<L>, to: V<L>, far: L::M) -> Missed<L
     let distance = (to - o).dot(d);
     let (x, y) = basis(l, V::pick(far, to, d));
     let off = V::pick(far, d, o + d * distance - to);
-    let moved = [0, 1].map(
-        #[inline(always)]
-        |i: usize| {
-            let change = V::pick(far, beams.dd[i], beams.dp[i] + beams.dd[i] * distance);
-            [x.dot(change), y.dot(change)]
-        },
-    );
+    let mut moved = [[distance; 2]; 2];
+    for i in 0..2 {
+        let change = V::pick(far, beams.dd[i], beams.dp[i] + beams.dd[i] * distance);
+        moved[i] = [x.dot(change), y.dot(change)];
+    }
     ([x.dot(off), y.dot(off)], moved, far.pick(to.dot(d), distance))
 }
 
@@ -123,10 +121,10 @@ impl<L: Lanes> Probes<L> {
 
     #[inline(always)]
     fn pick(mask: L::M, yes: Probes<L>, no: Probes<L>) -> Probes<L> {
-        let change = [0, 1].map(
-            #[inline(always)]
-            |i: usize| pick_pair::<L>(mask, yes.change[i], no.change[i]),
-        );
+        let change = [
+            pick_pair::<L>(mask, yes.change[0], no.change[0]),
+            pick_pair::<L>(mask, yes.change[1], no.change[1]),
+        ];
         Probes {
             some: (mask & yes.some) | (!mask & no.some),
             w: V::pick(mask, yes.w, no.w),
@@ -203,7 +201,7 @@ impl<L: Lanes> Probes<L> {
             some: self.some.bits() >> lane & 1 == 1,
             w: V::splat(One, self.w.get(lane)),
             miss: pair(self.miss),
-            change: self.change.map(pair),
+            change: [pair(self.change[0]), pair(self.change[1])],
         }
     }
 }
@@ -243,14 +241,14 @@ impl Lobe {
     /// Draws a direction.
     #[inline]
     pub fn sample(&self, choice: f32, u: [f32; 2]) -> V<One> {
-        let place = warp::disc(One, u);
+        let [x, y] = warp::disc(One, u);
         let scale = if choice < TAIL {
             // Of a squared radius uniform in (0, 1), u / (1 − u) has the density 1 / (1 + r²)².
-            self.size / (1.0 - squared::<One>(place)).max(f32::MIN_POSITIVE).sqrt()
+            self.size / (1.0 - squared::<One>([x, y])).max(f32::MIN_POSITIVE).sqrt()
         } else {
             self.size * ENLARGED
         };
-        self.probe.direction(One, self.probe.components_of(place.map(|v| v * scale)))
+        self.probe.direction(One, self.probe.components_of([x * scale, y * scale]))
     }
 
     /// Density of [`Lobe::sample`] in solid angle.
@@ -261,11 +259,10 @@ impl Lobe {
             return 0.0;
         }
         let (x, y) = basis(One, self.probe.w);
-        let components = [w.dot(x) / along, w.dot(y) / along];
-        let [a, b] = self.probe.change;
-        let place =
-            [0, 1].map(|i| (self.probe.miss[i] + components[0] * a[i] + components[1] * b[i]) / self.size);
-        let squared = squared::<One>(place);
+        let (i, j) = (w.dot(x) / along, w.dot(y) / along);
+        let ([a, b], [m, n]) = (self.probe.change, self.probe.miss);
+        let squared =
+            squared::<One>([(m + i * a[0] + j * b[0]) / self.size, (n + i * a[1] + j * b[1]) / self.size]);
         let disc = if squared <= ENLARGED * ENLARGED { FRAC_1_PI / (ENLARGED * ENLARGED) } else { 0.0 };
         let tail = FRAC_1_PI / ((1.0 + squared) * (1.0 + squared));
         let density = TAIL * tail + (1.0 - TAIL) * disc;

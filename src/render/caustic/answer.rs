@@ -3,7 +3,7 @@
 use super::aim::{Aims, Lobe, Probes, aim, enough, missed, most};
 use super::chain::{Beams, Met, WaysOf, follow, meet};
 use super::goal::{Goal, Target};
-use super::looks::{Look, Wanted};
+use super::looks::{Look, Scattering, Wanted};
 use super::search::{Random, draws_until, is_same};
 use super::{Caustics, Hope};
 use crate::render::Tracer;
@@ -173,7 +173,7 @@ fn unknown(
     if known.iter().any(|probe| is_same(probe, root)) {
         return None;
     }
-    let (rays, _) = starts(One, std::iter::once(look));
+    let (rays, _) = starts(One, &[look]);
     let draws =
         draws_until(tracer, search, (rays, inside), (look.ways, look.goal), root, &mut Random::new(!key));
     Some((found.w, look.effort / draws as f32))
@@ -188,7 +188,7 @@ fn hope<'c>(caustics: &'c Caustics, look: &Look) -> Option<Hope<'c>> {
 macro_rules! column {
     ($l:expr, $load:ident, $zero:expr, $items:expr, |$item:ident| $value:expr) => {{
         let mut column = [$zero; MOST];
-        for (value, $item) in column.iter_mut().zip($items) {
+        for (value, $item) in column.iter_mut().zip($items.iter()) {
             *value = $value;
         }
         $l.$load(&column)
@@ -199,7 +199,7 @@ macro_rules! column {
 macro_rules! vectors {
     ($l:expr, $items:expr, |$item:ident| $value:expr) => {{
         let mut columns = [[0.0; MOST]; 3];
-        for (lane, $item) in $items.enumerate() {
+        for (lane, $item) in $items.iter().enumerate() {
             let [x, y, z] = $value;
             columns[0][lane] = x;
             columns[1][lane] = y;
@@ -209,22 +209,33 @@ macro_rules! vectors {
     }};
 }
 
+/// What several tasks or chains, which are no more than there are lanes, are about.
+macro_rules! about {
+    ($items:expr, $all:expr, |$item:ident| $index:expr) => {{
+        let mut about = [&$all[0]; MOST];
+        for (this, $item) in about.iter_mut().zip($items.iter()) {
+            *this = &$all[$index as usize];
+        }
+        about
+    }};
+}
+
 /// The starts of chains, without direction, and their ways.
 #[inline(always)]
-fn starts<'a, L: Lanes>(l: L, looks: impl Iterator<Item = &'a Look> + Clone) -> (Rays<L>, WaysOf<L>) {
-    let o = vectors!(l, looks.clone(), |look| look.p);
-    let start = column!(l, load_words, NOWHERE, looks.clone(), |look| look.place);
-    let detail = column!(l, load_words, 0, looks.clone(), |look| look.detail);
-    let through = column!(l, load_words, 0, looks.clone(), |look| look.ways.through);
+fn starts<L: Lanes>(l: L, looks: &[&Look]) -> (Rays<L>, WaysOf<L>) {
+    let o = vectors!(l, looks, |look| look.p);
+    let start = column!(l, load_words, NOWHERE, looks, |look| look.place);
+    let detail = column!(l, load_words, 0, looks, |look| look.detail);
+    let through = column!(l, load_words, 0, looks, |look| look.ways.through);
     let end = column!(l, load_words, 0, looks, |look| look.ways.end);
     (Rays { o, d: V::all(l.f(0.0)), start, detail }, WaysOf { through, end })
 }
 
 /// The middles or directions of lamps, and which of them are distant.
 #[inline(always)]
-fn targets<'a, L: Lanes>(l: L, goals: impl Iterator<Item = &'a Goal> + Clone) -> (V<L>, L::M) {
+fn targets<L: Lanes>(l: L, goals: &[&Goal]) -> (V<L>, L::M) {
     let mut far = 0;
-    for (lane, goal) in goals.clone().enumerate() {
+    for (lane, goal) in goals.iter().enumerate() {
         far |= u32::from(matches!(goal.target, Target::Far { .. })) << lane;
     }
     let to = vectors!(l, goals, |goal| match goal.target {
@@ -244,38 +255,32 @@ fn aim_all<L: Lanes>(
     work: &mut [Inside],
     probes: &mut Vec<Probes<One>>,
 ) {
-    let goals = &tracer.caustics.goals;
-    let looks = tasks.iter().map(|task| &list[task.look as usize]);
-    let (starts, ways) = starts(l, looks.clone());
-    let aimed_at = looks.clone().map(|look| &goals[look.goal as usize]);
-    let (to, far) = targets(l, aimed_at.clone());
+    let looks = &about!(tasks, list, |task| task.look)[..tasks.len()];
+    let goals = &about!(looks, tracer.caustics.goals, |look| look.goal)[..tasks.len()];
+    let (starts, ways) = starts(l, looks);
+    let (to, far) = targets(l, goals);
     let mut near_enough = [[0.0; MOST]; 2];
-    for (lane, look) in looks.clone().enumerate() {
-        let target = &goals[look.goal as usize].target;
-        [near_enough[0][lane], near_enough[1][lane]] = enough(target, V::splat(One, look.p));
+    for (lane, (look, goal)) in looks.iter().zip(goals).enumerate() {
+        [near_enough[0][lane], near_enough[1][lane]] = enough(&goal.target, V::splat(One, look.p));
     }
     let aims = Aims {
         starts,
         towards: [
-            vectors!(l, tasks.iter(), |task| task.towards[0].get(0)),
-            vectors!(l, tasks.iter(), |task| task.towards[1].get(0)),
+            vectors!(l, tasks, |task| task.towards[0].get(0)),
+            vectors!(l, tasks, |task| task.towards[1].get(0)),
         ],
         ways,
         to,
         far,
-        enough: near_enough.map(
-            #[inline(always)]
-            |column| l.load(&column),
-        ),
-        most: column!(l, load_words, 0, aimed_at, |goal| most(&goal.target)),
+        enough: [l.load(&near_enough[0]), l.load(&near_enough[1])],
+        most: column!(l, load_words, 0, goals, |goal| most(&goal.target)),
     };
-    let mut from = [&insides[0]; MOST];
-    for (inside, task) in from.iter_mut().zip(tasks) {
-        *inside = &insides[task.look as usize];
-    }
+    let from = about!(tasks, insides, |task| task.look);
     let wanted = l.mask(u32::MAX >> (u32::BITS - tasks.len() as u32));
     let found = aim(l, tracer, &aims, (&from, work), wanted);
-    probes.extend((0..tasks.len()).map(|lane| found.lane(lane)));
+    for lane in 0..tasks.len() {
+        probes.push(found.lane(lane));
+    }
 }
 
 /// Follows at most as many chains as there are lanes to their lamps, and notes what they bring.
@@ -288,12 +293,12 @@ fn gather<L: Lanes>(
     work: &mut [Inside],
     answers: &mut [[f32; 3]],
 ) {
-    let looks = chains.iter().map(|chain| &list[chain.look as usize]);
-    let goals = looks.clone().map(|look| &tracer.caustics.goals[look.goal as usize]);
-    let (starts, ways) = starts(l, looks.clone());
-    let w = vectors!(l, chains.iter(), |chain| chain.w.get(0));
+    let looks = &about!(chains, list, |chain| chain.look)[..chains.len()];
+    let goals = &about!(looks, tracer.caustics.goals, |look| look.goal)[..chains.len()];
+    let (starts, ways) = starts(l, looks);
+    let w = vectors!(l, chains, |chain| chain.w.get(0));
     let wanted = l.mask(u32::MAX >> (u32::BITS - chains.len() as u32));
-    let (scattered, by_chance) = scattered(l, tracer, looks.clone(), w, wanted);
+    let (scattered, by_chance) = scattered(l, tracer, looks, w, wanted);
     let wanted = wanted & l.f(0.0).lt(scattered.max());
     for (inside, chain) in work.iter_mut().zip(chains) {
         inside.clone_from(&insides[chain.look as usize]);
@@ -302,18 +307,18 @@ fn gather<L: Lanes>(
     if !alive.any() {
         return;
     }
-    let (to, far) = targets(l, goals.clone());
+    let (to, far) = targets(l, goals);
     let (_, [x, y], ahead) = missed(l, &beams, to, far);
     let spread = (x[0] * y[1] - x[1] * y[0]).magnitude();
     let mut points = 0;
-    for (lane, goal) in goals.clone().enumerate() {
+    for (lane, goal) in goals.iter().enumerate() {
         points |= u32::from(goal.target.is_point()) << lane;
     }
     let points = l.mask(points);
     let infinity = l.f(f32::INFINITY);
     let within = (points & !far).pick(ahead, infinity);
     let met = meet(l, tracer, &mut beams, work, within, l.u(u32::MAX), alive);
-    let density = column!(l, load, 0.0, chains.iter(), |chain| chain.density);
+    let density = column!(l, load, 0.0, chains, |chain| chain.density);
     let share = tracer.sharing.gathered(l, density, by_chance * beams.odds);
     let factor = points.pick(l.f(1.0) / (density * spread), share / density);
     let carried = scattered.times(beams.weight) * factor;
@@ -323,43 +328,37 @@ fn gather<L: Lanes>(
         }
         let Some(radiance) = shown(tracer, goal, &beams, &met, lane) else { continue };
         let (carried, shown) = (V::splat(One, carried.get(lane)), V::splat(One, radiance));
-        let answer = carried.times(shown).get(0).map(|v| v.min(BRIGHTEST));
-        if answer.iter().all(|v| v.is_finite()) {
-            answers[chain.look as usize] = answer;
+        let [r, g, b] = carried.times(shown).get(0);
+        if r.is_finite() && g.is_finite() && b.is_finite() {
+            answers[chain.look as usize] = [r.min(BRIGHTEST), g.min(BRIGHTEST), b.min(BRIGHTEST)];
         }
     }
 }
 
 /// Throughput times BSDF times cosine, and the density with which chance draws the direction.
 #[inline(always)]
-fn scattered<'a, L: Lanes>(
-    l: L,
-    tracer: &Tracer,
-    looks: impl Iterator<Item = &'a Look> + Clone,
-    w: V<L>,
-    wanted: L::M,
-) -> (V<L>, L::F) {
-    let mut by = [None; MOST];
-    for (scattering, look) in by.iter_mut().zip(looks.clone()) {
+fn scattered<L: Lanes>(l: L, tracer: &Tracer, looks: &[&Look], w: V<L>, wanted: L::M) -> (V<L>, L::F) {
+    let mut by = [Scattering::default(); MOST];
+    for (scattering, look) in by.iter_mut().zip(looks) {
         if let Wanted::Light { scattering: here, .. } | Wanted::Unknown { scattering: here, .. } = look.wanted
         {
-            *scattering = Some(here);
+            *scattering = here;
         }
     }
-    let by = || by.iter().flatten();
+    let by = &by[..looks.len()];
     let z = vectors!(l, looks, |look| look.n);
     let (x, y) = basis(l, z);
     let wi = V::new(w.dot(x), w.dot(y), w.dot(z));
     let bsdfs = Bsdfs {
-        kind: column!(l, load_words, 0, by(), |at| at.kind),
-        color: vectors!(l, by(), |at| at.color),
-        alpha: column!(l, load, 1.0, by(), |at| at.alpha),
+        kind: column!(l, load_words, 0, by, |at| at.kind),
+        color: vectors!(l, by, |at| at.color),
+        alpha: column!(l, load, 1.0, by, |at| at.alpha),
         eta: l.f(1.0),
-        coat: column!(l, load_words, 0, by(), |at| at.coat),
+        coat: column!(l, load_words, 0, by, |at| at.coat),
     };
-    let wo = vectors!(l, by(), |at| at.wo);
-    let rim = vectors!(l, by(), |at| at.rim);
-    let throughput = vectors!(l, by(), |at| at.throughput);
+    let wo = vectors!(l, by, |at| at.wo);
+    let rim = vectors!(l, by, |at| at.rim);
+    let throughput = vectors!(l, by, |at| at.throughput);
     let (value, pdf) = bsdfs.eval(l, &tracer.materials.coats, wo, wi, wanted);
     let zero = l.f(0.0);
     let above = zero.lt(wi.z) & zero.lt(rim.dot(w));

@@ -286,10 +286,7 @@ impl<L: Lanes> Beams<L> {
         let side = met.entering.pick(one, -one);
         let n = met.points.shading * side;
         let bend = tracer.surfaces.bend(l, &met.hits, &met.points, self.dp, gone);
-        let dn = bend.map(
-            #[inline(always)]
-            |dn| dn * side,
-        );
+        let dn = [bend[0] * side, bend[1] * side];
 
         // Snell's law in vectors: d/η + (cosine/η − refracted) n; and the mirror's: d + 2 cosine n.
         let inverse = passes.pick(one / met.bsdfs.eta, one);

@@ -72,7 +72,7 @@ pub enum Wanted {
 }
 
 /// How a surface scatters light towards the camera.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub struct Scattering {
     /// What a unit of radiance that leaves it adds to the pixel's.
     pub throughput: [f32; 3],
@@ -147,7 +147,8 @@ impl Looks {
     fn hand_over(&mut self, ticket: u32, jobs: &mut dyn Jobs) {
         let Waiting { sum, arrived, .. } = std::mem::take(&mut self.waiting[ticket as usize]);
         if let Some(arrived) = arrived {
-            let radiance = [0, 1, 2].map(|i| arrived.radiance[i] + sum[i]);
+            let ([r, g, b], [x, y, z]) = (arrived.radiance, sum);
+            let radiance = [r + x, g + y, b + z];
             jobs.finish(&Arrived { radiance, ..arrived });
         }
         self.free.push(ticket);
@@ -167,7 +168,9 @@ impl Looks {
             let Look { ticket, bounces, goal, .. } = self.list[index];
             let answer = self.work.answers[index];
             let waiting = &mut self.waiting[ticket as usize];
-            waiting.sum = [0, 1, 2].map(|i| waiting.sum[i] + answer[i]);
+            for (sum, answer) in waiting.sum.iter_mut().zip(answer) {
+                *sum += answer;
+            }
             waiting.looks -= 1;
             if O::WATCHES && answer != [0.0; 3] {
                 observer.contributed(&Contribution {

@@ -184,7 +184,7 @@ impl Seeds {
             }
         }
         let toward = V::splat(One, best.1.toward);
-        [toward - p, toward - V::splat(One, best.1.p)].map(|w| w.normalized(One))
+        [(toward - p).normalized(One), (toward - V::splat(One, best.1.p)).normalized(One)]
     }
 }
 

@@ -55,6 +55,14 @@ pub struct Here<'a, L: Lanes> {
 }
 
 impl<L: Lanes> Here<'_, L> {
+    /// Scattering events with the one here.
+    #[inline]
+    fn next_bounces(&self, lane: usize) -> [u32; 2] {
+        let [all, rough] = self.bounces;
+        [all.get(lane) + 1, rough.get(lane) + 1]
+    }
+
+    #[inline]
     fn scattering(&self, lane: usize) -> Scattering {
         Scattering {
             throughput: self.throughput.get(lane),
@@ -144,7 +152,7 @@ impl<L: Lanes> Chains<L> {
             }
             let Some(hope) = Hope::within(seeds, cell, n) else { continue };
             let Some((index, seed, rest)) = hope.choose(choice.get(lane)) else { continue };
-            let [bounces, rough_bounces] = here.bounces.map(|count| count.get(lane) + 1);
+            let [bounces, rough_bounces] = here.next_bounces(lane);
             let events = seed.ways.count();
             if bounces + events > tracer.scene.trace.bounces {
                 continue;
@@ -174,7 +182,7 @@ impl<L: Lanes> Chains<L> {
         let (p, n) = (one(vertices.p, lane), one(vertices.z, lane));
         let look = Look {
             ticket: self.ticket(lane),
-            bounces: here.bounces.map(|count| count.get(lane) + 1),
+            bounces: here.next_bounces(lane),
             p: p.get(0),
             n: n.get(0),
             place: vertices.place.get(lane),

@@ -6,7 +6,9 @@
 //! result are offered (+ − × ÷ √, comparisons, integers; nothing fused), so every width gives the same bits.
 //!
 //! Code for lanes is made of plain functions marked `#[inline(always)]`: they must end up inside the function that
-//! was compiled for the processor's instructions, see [`Lanes::run`].
+//! was compiled for the processor's instructions, see [`Lanes::run`]. A plain function or a closure given to `map` of an
+//! array may stay outside, and then every call of it sends all registers through memory: small functions on the way are
+//! `#[inline]`, and arrays are gone through by loops.
 
 mod one;
 mod table;

@@ -136,15 +136,17 @@ impl Quadric {
         if face != Face::Side {
             return [V::all(0.0); 2];
         }
-        let [x, y, z] = self.rows.map(|row| V::splat(One, row));
+        let [x, y, z] = self.rows;
+        let (x, y, z) = (V::splat(One, x), V::splat(One, y), V::splat(One, z));
         let world = |o: V<One>| x * o.x + y * o.y + z * o.z;
         let o = self.object(One, point.p - V::splat(One, self.middle));
         let length = world(V::new(o.x, o.y * self.sign + self.slope, o.z)).squared().sqrt();
-        steps.map(|step| {
+        let bend = |step| {
             let o = self.object(One, step);
             let change = world(V::new(o.x, o.y * self.sign, o.z));
             (change - point.n * point.n.dot(change)) * (1.0 / length)
-        })
+        };
+        [bend(steps[0]), bend(steps[1])]
     }
 
     /// The point of a face next to a point that lies on it but for rounding, with the outward normal.
