@@ -13,6 +13,8 @@ pub struct Goal {
     pub target: Target,
     /// About its power; of a distant one its irradiance.
     pub strength: f32,
+    /// Luminance of its mean radiance; none of one that no ray finds by chance.
+    pub radiance: Option<f32>,
 }
 
 /// Where a lamp is. The size is 0 for one that no ray finds by chance.

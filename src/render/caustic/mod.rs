@@ -37,6 +37,7 @@ use chain::Ways;
 use goal::Goal;
 use search::Search;
 use seeds::{Cell, Seed, Seeds};
+use std::f32::consts::PI;
 
 /// Where the caustics of a scene come from.
 #[derive(Default)]
@@ -59,7 +60,7 @@ impl Caustics {
         let goals = tracer.lights.goals();
         let photons = photons::photons(tracer, &goals, &casters);
         let search = Search::new(&goals, &photons);
-        let Some(seeds) = Seeds::new(photons, |p, hoped| effort(&tracer.lights, p, hoped)) else {
+        let Some(seeds) = Seeds::new(photons, |p, seeds| effort(&tracer.lights, &goals, p, seeds)) else {
             return Caustics::default();
         };
         let mut goal_of = vec![None; tracer.lights.len()];
@@ -147,15 +148,34 @@ impl<'c> Hope<'c> {
     }
 }
 
-/// How often light is looked for where all comes by chains, and the least of it where any does: probabilities, of which
-/// the rest is for [`search::EFFORT`].
+/// How often light is looked for where all comes by chains that luck hardly finds.
 const EFFORT: f32 = 0.5;
-const LEAST_EFFORT: f32 = 0.05;
+/// The least of it, for photons say only about what is to be hoped for; more where luck never finds any. The rest of the
+/// probability is for [`search::EFFORT`].
+const LEAST_EFFORT: f32 = 0.005;
+const LEAST_WITHOUT_LUCK: f32 = 0.05;
+/// About how many steps of a path a look takes.
+const COST: f32 = 10.0;
 
-/// How often to look for light at a place: by the irradiance that is hoped for, beside what comes without caustics.
-/// Variance times cost is least when each place is looked at in proportion to what it may add to the picture.
-fn effort(lights: &Lights, p: [f32; 3], hoped: f32) -> f32 {
+/// How often to look for light at a place, as a probability: by the irradiance that is hoped for, beside what comes without
+/// caustics.
+///
+/// With m hoped for and σ the noise of all else, looks with probability q beside luck with probability p have the variance
+/// σ² + m²/(q + p), and cost 1 + `COST` q. The product is least for q = m/σ √((1 − `COST` p)/`COST`) − p; luck is the
+/// hemisphere's share that shows the lamps by way of the chains, weighted by the cosine.
+fn effort(lights: &Lights, goals: &[Goal], p: [f32; 3], seeds: &[Seed]) -> f32 {
+    let (mut hoped, mut luck) = (0.0, 0.0);
+    for seed in seeds {
+        hoped += seed.irradiance;
+        luck += goals[seed.goal as usize].radiance.map_or(0.0, |radiance| seed.irradiance / (PI * radiance));
+    }
+    if hoped <= 0.0 {
+        return 0.0;
+    }
     let p = V::splat(One, p);
     let direct = lights.irradiance(&Receivers { p, n: V::splat(One, [0.0, 0.0, 1.0]), open: true });
-    (EFFORT * hoped / (hoped + direct)).max(LEAST_EFFORT)
+    let worth = (1.0 - COST * luck).max(0.0).sqrt();
+    let best = EFFORT * hoped / (hoped + direct) * worth - luck;
+    let least = if luck > 0.0 { LEAST_EFFORT } else { LEAST_WITHOUT_LUCK };
+    best.max(least * worth)
 }

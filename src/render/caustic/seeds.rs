@@ -92,8 +92,8 @@ const REACH: f64 = 0.5;
 
 impl Seeds {
     /// Sorts photons into cells; none without photons. How often to look for light at a place is told from the
-    /// irradiance that is hoped for there.
-    pub fn new(mut photons: Vec<Photon>, effort: impl Fn([f32; 3], f32) -> f32 + Sync) -> Option<Seeds> {
+    /// seeds there.
+    pub fn new(mut photons: Vec<Photon>, effort: impl Fn([f32; 3], &[Seed]) -> f32) -> Option<Seeds> {
         let bounds = photons
             .iter()
             .map(|photon| place(photon.p))
@@ -129,13 +129,12 @@ impl Seeds {
     }
 
     /// Adds what was found for the next cell.
-    fn push(&mut self, found: Found, middle: [f32; 3], effort: impl Fn([f32; 3], f32) -> f32) {
+    fn push(&mut self, found: Found, middle: [f32; 3], effort: impl Fn([f32; 3], &[Seed]) -> f32) {
         let (first, tracks) = (self.seeds.len() as u32, self.tracks.len() as u32);
         let count = found.seeds.len() as u32;
-        let hoped = found.seeds.iter().map(|seed| seed.irradiance).sum();
         self.seeds.extend(found.seeds.into_iter().map(|seed| Seed { first: seed.first + tracks, ..seed }));
         self.tracks.extend(found.tracks);
-        let effort = if hoped > 0.0 { effort(middle, hoped) } else { 0.0 };
+        let effort = effort(middle, &self.seeds[first as usize..]);
         self.cells.push(Cell { first, count, effort });
         self.most_effort = self.most_effort.max(effort);
     }

@@ -212,7 +212,7 @@ impl<L: Lanes> Chains<L> {
         let Some(goal) = tracer.caustics.goal_of(luck.lamp) else { return false };
         let (p, n) = (one(self.p, lane), one(self.n, lane));
         let Some(hope) = tracer.caustics.hope(p, n) else { return false };
-        if hope.by(ways, goal).next().is_none() {
+        if hope.cell.effort <= 0.0 || hope.by(ways, goal).next().is_none() {
             return false;
         }
         let look = Look {

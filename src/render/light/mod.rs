@@ -445,6 +445,7 @@ impl Lamp {
     /// What chains of mirrors and glass may lead to, if it has a place.
     fn goal(&self, index: u32) -> Option<Goal> {
         let strength = self.strength;
+        let radiance = Some(strength);
         let (target, strength) = match &self.kind {
             Kind::Point { position } | Kind::Spot { position, .. } => {
                 (Target::Near { center: *position, radius: 0.0 }, 4.0 * PI as f32 * strength)
@@ -464,7 +465,8 @@ impl Lamp {
             }
             Kind::Sky | Kind::Panorama(_) => return None,
         };
-        Some(Goal { source: self.source, lamp: index, target, strength })
+        let radiance = radiance.filter(|_| !target.is_point());
+        Some(Goal { source: self.source, lamp: index, target, strength, radiance })
     }
 
     /// What a ray in a direction from beyond all surfaces sees of a lamp that is no surface: radiance; of a point that lies
