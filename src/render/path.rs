@@ -338,7 +338,7 @@ impl<L: Lanes> Paths<L> {
         for &index in tracer.lights.beyond() {
             let lamp = tracer.lights.lamp(index);
             let (seen, density) = lamp.beyond(l, &self.last, self.rays.d, missed);
-            let chance = tracer.lights.chance(l, lamp, &self.last, self.last_total);
+            let chance = tracer.lights.chance(l, index, &self.last, self.last_total);
             let share = tracer.sharing.found(l, self.last_pdf, density * chance);
             let radiance = lamp.seen(l, self.rays.d, missed) * share;
             let seen = missed & seen;
@@ -390,12 +390,7 @@ impl<L: Lanes> Paths<L> {
                 }
                 1.0
             } else {
-                let last = &self.last;
-                let receivers = Receivers {
-                    p: one(last.p, lane),
-                    n: one(last.n, lane),
-                    open: last.open.bits() >> lane & 1 == 1,
-                };
+                let receivers = self.last.lane(lane);
                 let n = one(points.n, lane);
                 let point = Points { p: one(points.p, lane), n, shading: n };
                 let (total, wi) = (self.last_total.get(lane), one(self.rays.d, lane));
@@ -464,12 +459,12 @@ impl<L: Lanes> Paths<L> {
         let receivers = &self.last;
         let [choice, _] =
             if lights.needs_choice() { self.sampler.pair(l, Pair::Choice, self.bounces) } else { [zero; 2] };
-        let (index, probability, part) = lights.choose(l, receivers, self.last_total, choice);
-        let light = lights.sample(l, tracer, receivers, (index, part), u, rough);
+        let chosen = lights.choose(l, receivers, self.last_total, choice, rough);
+        let light = lights.sample(l, tracer, receivers, &chosen, u, rough);
         let wi = vertices.local(light.wi);
         let agrees = vertices.agree(l, tracer, wi, light.wi);
         let (scattering, density) = bsdfs.eval(l, &tracer.materials.coats, vertices.wo, wi, rough);
-        let pdf = probability * light.pdf;
+        let pdf = chosen.probability * light.pdf;
         let share = light.delta.pick(l.f(1.0), tracer.sharing.gathered(l, pdf, density));
         let wanted = rough & light.some & agrees & zero.lt(scattering.max()) & zero.lt(share);
         if !wanted.any() {
@@ -481,7 +476,7 @@ impl<L: Lanes> Paths<L> {
             let one = l.u(1);
             let counts = (self.bounces + one, self.rough_bounces + one);
             for lane in wanted.lanes() {
-                let source = lights.lamp(index.get(lane)).source();
+                let source = lights.lamp(chosen.index.get(lane)).source();
                 self.add(l, tracer, source, counts, radiance, l.mask(1 << lane), observer);
             }
         } else {

@@ -232,15 +232,32 @@ impl Lamps {
         let receiver = self.receiver(p, n);
         let lights = &self.tracer.lights;
         let total = lights.total(One, &receiver);
-        let (index, _, part) = lights.choose(One, &receiver, total, choice as f32);
+        let chosen = lights.choose(One, &receiver, total, choice as f32, true);
         let u = u.map(|u| u as f32);
-        let light = lights.sample(One, &self.tracer, &receiver, (index, part), u, true);
+        let light = lights.sample(One, &self.tracer, &receiver, &chosen, u, true);
         light.some.then(|| Light {
             wi: double(light.wi, 0),
             distance: f64::from(light.distance) * self.tracer.space.unit(),
             radiance: double(light.radiance, 0) * self.tracer.unit,
             pdf: f64::from(light.pdf),
         })
+    }
+
+    /// The probability of each lamp to be chosen.
+    pub fn chances(&self, p: DVec3, n: Option<DVec3>) -> Vec<f64> {
+        let receiver = self.receiver(p, n);
+        let lights = &self.tracer.lights;
+        let total = lights.total(One, &receiver);
+        (0..lights.len() as u32).map(|i| f64::from(lights.chance(One, i, &receiver, total))).collect()
+    }
+
+    /// Chooses a lamp by a number: which, its probability, and the number made uniform again.
+    pub fn choose(&self, p: DVec3, n: Option<DVec3>, choice: f64) -> (usize, f64, f64) {
+        let receiver = self.receiver(p, n);
+        let lights = &self.tracer.lights;
+        let total = lights.total(One, &receiver);
+        let chosen = lights.choose(One, &receiver, total, choice as f32, true);
+        (chosen.index.get(0) as usize, f64::from(chosen.probability), f64::from(chosen.rest))
     }
 
     /// The density with which a direction is drawn: to a light beyond the scene, or else to what is met first.
@@ -252,7 +269,7 @@ impl Lamps {
         if let [index] = *lights.beyond() {
             let lamp = lights.lamp(index);
             let (seen, density) = lamp.beyond(One, &receiver, w, true);
-            return if seen { f64::from(density * lights.chance(One, lamp, &receiver, total)) } else { 0.0 };
+            return if seen { f64::from(density * lights.chance(One, index, &receiver, total)) } else { 0.0 };
         }
         let ray = Rays { o: receiver.p, d: w, start: One.u(NOWHERE), detail: One.u(0) };
         let surfaces = &self.tracer.surfaces;

@@ -59,7 +59,9 @@ fn scenes_of_all_kinds() -> Vec<Scene> {
     crowd.trace.filter = Filter::Gaussian;
     crowd.trace.size = [24, 24];
     let few = Scene { primitives: crowd.primitives[..30].to_vec(), ..crowd.clone() };
-    vec![small_room(), few, crowd]
+    let mut hall = lights::many_lamps();
+    hall.trace.size = [24, 24];
+    vec![small_room(), few, crowd, hall]
 }
 
 #[test]

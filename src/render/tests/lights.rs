@@ -158,6 +158,60 @@ fn lamps() -> Vec<(&'static str, Scene)> {
     ]
 }
 
+/// So many lamps of all kinds that they are chosen by a tree.
+pub fn many_lamps() -> Scene {
+    let mut random = Random(23);
+    let mut scene = scene(v(0.0, 1.0, 5.0), DVec3::ZERO).with(floor(), white());
+    for i in 0..120 {
+        let at = v(random.within(-4.0, 4.0), random.within(0.2, 3.0), random.within(-4.0, 4.0));
+        let color = Rgb::new(1.0, 0.8, 0.5) * random.within(0.1, 3.0);
+        scene = match i % 4 {
+            0 => scene.with(sphere(at, 0.05), glow(5.0)),
+            1 => scene.with_light(Light::Point { position: at, intensity: color }),
+            2 => scene.with(Shape::Disk(placed(DMat3::from_diagonal(v(0.1, 0.1, 0.1)), at)), glow(3.0)),
+            _ => scene.with_light(Light::Spot {
+                position: at,
+                direction: v(0.0, -1.0, 0.0),
+                intensity: color,
+                inner: 0.2,
+                outer: 0.6,
+            }),
+        };
+    }
+    scene
+        .with_light(Light::Sun { direction: v(0.6, 0.8, 0.0), irradiance: Rgb::splat(0.2), radius: 0.01 })
+        .with_sky(0.05)
+}
+
+#[test]
+fn lamps_are_chosen_as_often_as_is_told() {
+    const DRAWS: u32 = 20_000;
+    let few = Scene { primitives: Vec::new(), ..many_lamps() };
+    let few = Scene { lights: few.lights[..10].to_vec(), ..few };
+    for scene in [many_lamps(), few] {
+        let lamps = Lamps::of(&scene);
+        let mut random = Random(5);
+        for _ in 0..20 {
+            let p = v(random.within(-5.0, 5.0), random.within(0.0, 4.0), random.within(-5.0, 5.0));
+            let n = [None, Some(DVec3::Y), Some(DVec3::NEG_Y)][(random.next() * 3.0) as usize];
+            let chances = lamps.chances(p, n);
+            assert!((chances.iter().sum::<f64>() - 1.0).abs() < 1e-4, "{p} {n:?}");
+            let mut counts = vec![0; chances.len()];
+            for i in 0..DRAWS {
+                let (lamp, probability, rest) = lamps.choose(p, n, (f64::from(i) + 0.5) / f64::from(DRAWS));
+                assert!((probability / chances[lamp] - 1.0).abs() < 1e-4);
+                assert!((0.0..1.0).contains(&rest));
+                counts[lamp] += 1;
+            }
+            // Evenly spaced numbers: each lamp has an interval of those that choose blindly, and one of the others.
+            for (count, chance) in counts.into_iter().zip(chances) {
+                let off = f64::from(count) - chance * f64::from(DRAWS);
+                assert!(off.abs() < 4.0 + 1e-4 * f64::from(DRAWS), "{p} {n:?}: {count} {chance}");
+            }
+        }
+    }
+}
+
 #[test]
 fn gathering_and_finding_agree() {
     for material in [
