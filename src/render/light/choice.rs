@@ -1,9 +1,9 @@
 //! Which light a vertex gathers from: more likely one that gives much there.
 
-use super::tree::{LightTree, Place};
+use super::tree::{LightTree, Place, grouped};
 use super::{Kind, Lamp, Lights, Receivers};
 use crate::math::PI;
-use crate::render::lanes::{Float, Lanes, Mask, Word};
+use crate::render::lanes::{Float, Lanes, Mask, One, Word};
 use crate::render::vector::V;
 
 /// What the uniform share in choosing a light is. It bounds the noise where the estimates are far off.
@@ -12,24 +12,44 @@ const UNIFORM: f32 = 0.1;
 pub(super) const MOST_ESTIMATE: f32 = 1e30;
 /// Up to so many lamps are asked one by one: in all lanes at once that is faster than a tree.
 const FEW: usize = 64;
+/// So many groups of near lamps are asked one by one, where there are more: a vertex amidst a group cannot tell its parts
+/// apart, so groups are better small.
+const GROUPS: usize = 32;
+
+/// No group.
+const NO_GROUP: u32 = u32::MAX;
 
 /// How lamps are chosen.
 pub(super) struct Choice {
     /// Those that are asked one by one.
     asked: Vec<u32>,
-    /// The others, which all have a place.
-    tree: Option<LightTree>,
+    /// The others, which all have a place, in groups.
+    groups: Vec<LightTree>,
+    /// Of each lamp in a group, which.
+    group_of: Vec<Option<u32>>,
 }
 
 impl Choice {
     pub(super) fn new(lamps: &[Lamp]) -> Choice {
         let places: Vec<Place> = (0..).zip(lamps).filter_map(|(index, lamp)| lamp.place(index)).collect();
         let all = 0..lamps.len() as u32;
+        let mut group_of = vec![None; lamps.len()];
         if places.len() <= FEW {
-            return Choice { asked: all.collect(), tree: None };
+            return Choice { asked: all.collect(), groups: Vec::new(), group_of };
         }
-        let asked = all.filter(|index| lamps[*index as usize].place(*index).is_none()).collect();
-        Choice { asked, tree: Some(LightTree::new(places, lamps.len())) }
+        let groups: Vec<LightTree> =
+            grouped(places, GROUPS).into_iter().map(|group| LightTree::new(group)).collect();
+        for (index, group) in (0..).zip(&groups) {
+            for lamp in group.lamps() {
+                group_of[lamp as usize] = Some(index);
+            }
+        }
+        Choice { asked: all.filter(|lamp| group_of[*lamp as usize].is_none()).collect(), groups, group_of }
+    }
+
+    /// The group of a lamp, if it is in one.
+    fn group(&self, lamp: u32) -> Option<&LightTree> {
+        self.group_of[lamp as usize].map(|group| &self.groups[group as usize])
     }
 }
 
@@ -54,8 +74,8 @@ impl Lights {
             for index in &self.choice.asked {
                 total = total + self.lamp(*index).estimate(l, receivers);
             }
-            if let Some(tree) = &self.choice.tree {
-                total = total + tree.estimate(l, receivers);
+            for group in &self.choice.groups {
+                total = total + group.estimate(l, receivers);
             }
         }
         total
@@ -95,31 +115,34 @@ impl Lights {
             left = left - here;
             open = open & !takes;
         }
-        match &self.choice.tree {
-            Some(tree) => {
-                let all = tree.estimate(l, receivers) / total;
-                left = left / all;
-                for lane in wanted.lanes() {
-                    let receiver = receivers.lane(lane);
-                    let among = if open.bits() >> lane & 1 == 1 {
-                        let drawn = tree.choose(&self.lamps, &receiver, left.get(lane));
-                        index.set(lane, drawn.lamp);
-                        rest.set(lane, drawn.rest);
-                        drawn.probability
-                    } else {
-                        tree.chance(&self.lamps, &receiver, index.get(lane)).unwrap_or(0.0)
-                    };
-                    if among > 0.0 {
-                        share.set(lane, all.get(lane) * among);
-                    }
+        let mut group = l.u(NO_GROUP);
+        for (at, tree) in (0..).zip(&self.choice.groups) {
+            let here = tree.estimate(l, receivers) / total;
+            let last = at as usize + 1 == self.choice.groups.len();
+            let takes = if last { open } else { open & left.lt(here) };
+            group = takes.pick_word(l.u(at), group);
+            rest = takes.pick(left / here, rest);
+            share = takes.pick(here, share);
+            left = left - here;
+            open = open & !takes;
+        }
+        if !self.choice.groups.is_empty() {
+            for lane in wanted.lanes() {
+                let receiver = receivers.lane(lane);
+                if let Some(tree) = self.choice.groups.get(group.get(lane) as usize) {
+                    let drawn = tree.choose(&self.lamps, &receiver, rest.get(lane));
+                    index.set(lane, drawn.lamp);
+                    rest.set(lane, drawn.rest);
+                    share.set(lane, share.get(lane) * drawn.probability);
+                } else if let Some(tree) = self.choice.group(index.get(lane)) {
+                    let among = tree.chance(&self.lamps, &receiver, index.get(lane));
+                    share.set(lane, tree.estimate(One, &receiver) / total.get(lane) * among);
                 }
             }
+        } else if let Some(&last) = self.choice.asked.last() {
             // What rounding has left over.
-            None => {
-                let last = self.choice.asked[self.choice.asked.len() - 1];
-                index = open.pick_word(l.u(last), index);
-                share = open.pick(self.lamp(last).estimate(l, receivers) / total, share);
-            }
+            index = open.pick_word(l.u(last), index);
+            share = open.pick(self.lamp(last).estimate(l, receivers) / total, share);
         }
         let probability = guided.pick(share * (1.0 - UNIFORM) + UNIFORM / number, l.f(1.0 / number));
         Chosen { index, probability, rest: rest.greater(zero).lesser(l.f(1.0 - f32::EPSILON)) }
@@ -132,16 +155,15 @@ impl Lights {
         if self.lamps.len() == 1 {
             return l.f(1.0);
         }
-        let estimate = match &self.choice.tree {
-            Some(tree) if tree.holds(index) => {
+        let estimate = match self.choice.group(index) {
+            Some(tree) => {
                 let mut among = l.f(0.0);
                 for lane in 0..L::N {
-                    let chance = tree.chance(&self.lamps, &receivers.lane(lane), index);
-                    among.set(lane, chance.unwrap_or(0.0));
+                    among.set(lane, tree.chance(&self.lamps, &receivers.lane(lane), index));
                 }
                 tree.estimate(l, receivers) * among
             }
-            _ => self.lamp(index).estimate(l, receivers),
+            None => self.lamp(index).estimate(l, receivers),
         };
         let share = estimate / total * (1.0 - UNIFORM) + uniform * UNIFORM;
         l.f(0.0).lt(total).pick(share, l.f(uniform))

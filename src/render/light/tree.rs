@@ -1,4 +1,4 @@
-//! Which of many lights, chosen by what each may give: a tree whose nodes bound the lights below them.
+//! Which of many lights, chosen by what each may give: trees whose nodes bound the lights below them.
 //!
 //! At every node one of the two children is chosen in proportion to the greatest irradiance that its lights together may
 //! give at the receiver (Alejandro Conty Estevez and Christopher Kulla, "Importance sampling of many lights with adaptive
@@ -24,8 +24,8 @@ pub(super) struct Place {
 /// The tree. The first node is the root, and a left child comes right after its parent.
 pub(super) struct LightTree {
     nodes: Vec<Node>,
-    /// Each lamp's way from the root, right turns as bits, the first lowest; none of lamps that are not below.
-    trails: Vec<Option<u32>>,
+    /// Each lamp below, in order, with its way from the root: right turns as bits, the first lowest.
+    trails: Vec<(u32, u32)>,
 }
 
 /// What was chosen.
@@ -54,43 +54,37 @@ enum Below {
 }
 
 impl LightTree {
-    /// The tree over some of so many lamps; at least one.
-    pub fn new(mut places: Vec<Place>, lamps: usize) -> LightTree {
-        let mut tree = LightTree { nodes: Vec::with_capacity(2 * places.len()), trails: vec![None; lamps] };
+    /// The tree over some lamps; at least one.
+    pub fn new(mut places: Vec<Place>) -> LightTree {
+        let mut tree = LightTree { nodes: Vec::with_capacity(2 * places.len()), trails: Vec::new() };
         tree.build(&mut places, 0, 0);
+        tree.trails.sort_unstable();
         tree
+    }
+
+    /// Its lamps.
+    pub fn lamps(&self) -> impl Iterator<Item = u32> {
+        self.trails.iter().map(|(lamp, _)| *lamp)
     }
 
     /// Halves by number along the longest extent, so that no way is longer than the logarithm of their number.
     fn build(&mut self, places: &mut [Place], depth: u32, trail: u32) {
-        let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-        for place in &*places {
-            for axis in 0..3 {
-                low[axis] = low[axis].min(place.center[axis] - place.radius);
-                high[axis] = high[axis].max(place.center[axis] + place.radius);
-            }
-        }
-        let size = [high[0] - low[0], high[1] - low[1], high[2] - low[2]];
+        let (low, size) = extent(places);
         let [x, y, z] = size;
         let at = self.nodes.len();
         self.nodes.push(Node {
             strength: places.iter().map(|place| place.strength).sum::<f32>().min(MOST_ESTIMATE),
-            center: [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis])),
+            center: [0, 1, 2].map(|axis| low[axis] + 0.5 * size[axis]),
             radius_squared: 0.25 * (x * x + y * y + z * z),
             below: Below::Lamp(places[0].lamp),
         });
         if let [place] = places {
-            self.trails[place.lamp as usize] = Some(trail);
+            self.trails.push((place.lamp, trail));
             self.nodes[at].center = place.center;
             self.nodes[at].radius_squared = place.radius * place.radius;
             return;
         }
-        let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
-        let middle = places.len() / 2;
-        places.select_nth_unstable_by(middle, |a, b| {
-            a.center[axis].total_cmp(&b.center[axis]).then(a.lamp.cmp(&b.lamp))
-        });
-        let (left, right) = places.split_at_mut(middle);
+        let (left, right) = halved(places, size);
         self.build(left, depth + 1, trail);
         self.nodes[at].below = Below::Children(self.nodes.len() as u32);
         self.build(right, depth + 1, trail | 1 << depth);
@@ -100,11 +94,6 @@ impl LightTree {
     #[inline(always)]
     pub fn estimate<L: Lanes>(&self, l: L, receivers: &Receivers<L>) -> L::F {
         self.nodes[0].estimate(l, receivers)
-    }
-
-    /// Whether a lamp is one of its.
-    pub fn holds(&self, lamp: u32) -> bool {
-        self.trails[lamp as usize].is_some()
     }
 
     /// Chooses one of its lamps by a number.
@@ -131,9 +120,10 @@ impl LightTree {
         }
     }
 
-    /// The probability with which one of its lamps is chosen among them; none for another lamp.
-    pub fn chance(&self, lamps: &[Lamp], receivers: &Receivers<One>, lamp: u32) -> Option<f32> {
-        let mut trail = self.trails[lamp as usize]?;
+    /// The probability with which one of its lamps is chosen among them; 0 for another lamp.
+    pub fn chance(&self, lamps: &[Lamp], receivers: &Receivers<One>, lamp: u32) -> f32 {
+        let Ok(at) = self.trails.binary_search_by_key(&lamp, |(lamp, _)| *lamp) else { return 0.0 };
+        let mut trail = self.trails[at].1;
         let mut probability = 1.0;
         let mut at = 0;
         while let Below::Children(right) = self.nodes[at].below {
@@ -145,7 +135,7 @@ impl LightTree {
             };
             trail >>= 1;
         }
-        Some(probability)
+        probability
     }
 
     /// The probability of the left child.
@@ -158,6 +148,49 @@ impl LightTree {
         let sum = left + right;
         if sum > 0.0 { left / sum } else { 0.5 }
     }
+}
+
+/// Parts lamps into at most so many groups that lie together, none of them empty.
+pub(super) fn grouped(places: Vec<Place>, most: usize) -> Vec<Vec<Place>> {
+    let mut groups = vec![places];
+    // What a group does wrong to a vertex amidst it grows with its extent and its strength.
+    let harm = |group: &Vec<Place>| {
+        let (_, [x, y, z]) = extent(group);
+        let strength: f32 = group.iter().map(|place| place.strength).sum();
+        if group.len() > 1 { strength * (x * x + y * y + z * z) } else { -1.0 }
+    };
+    while groups.len() < most {
+        let worst = (0..groups.len()).max_by(|&a, &b| harm(&groups[a]).total_cmp(&harm(&groups[b])));
+        let Some(worst) = worst.filter(|&worst| groups[worst].len() > 1) else { break };
+        let mut group = std::mem::take(&mut groups[worst]);
+        let (_, size) = extent(&group);
+        let middle = halved(&mut group, size).0.len();
+        groups.push(group.split_off(middle));
+        groups[worst] = group;
+    }
+    groups
+}
+
+/// The least corner of the box around lamps, and its size.
+fn extent(places: &[Place]) -> ([f32; 3], [f32; 3]) {
+    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    for place in places {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(place.center[axis] - place.radius);
+            high[axis] = high[axis].max(place.center[axis] + place.radius);
+        }
+    }
+    (low, [high[0] - low[0], high[1] - low[1], high[2] - low[2]])
+}
+
+/// Halves lamps by number along their longest extent.
+fn halved(places: &mut [Place], size: [f32; 3]) -> (&mut [Place], &mut [Place]) {
+    let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
+    let middle = places.len() / 2;
+    places.select_nth_unstable_by(middle, |a, b| {
+        a.center[axis].total_cmp(&b.center[axis]).then(a.lamp.cmp(&b.lamp))
+    });
+    places.split_at_mut(middle)
 }
 
 /// The greatest number below 1.
