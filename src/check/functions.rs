@@ -154,6 +154,10 @@ impl Checker<'_> {
             return (ExprKind::Invalid, Type::Invalid);
         };
         let mut values = values;
+        let numbers = types.iter().chain([&ty]).all(|ty| matches!(ty, Type::Scalar(_)));
+        if numbers {
+            return (ExprKind::Compute { function, arguments: values }, ty);
+        }
         if let Some(axis) = axis {
             // `turn` takes its axis as a first argument from here on.
             values.insert(0, Expr { kind: ExprKind::Number(axis as f64), span });
