@@ -53,6 +53,17 @@ impl Declared {
         }
     }
 
+    /// What a param is declared as that takes values of a type.
+    pub(super) fn of(ty: &Type) -> Option<Declared> {
+        match ty {
+            Type::Scalar(Element::Int) => Some(Declared::Field(FieldType::Int)),
+            Type::List(item) if **item != Type::Invalid => {
+                Declared::of(item).map(|item| Declared::List(Box::new(item)))
+            }
+            ty => TYPES.iter().map(|(_, declared)| declared).find(|declared| declared.accepts(ty)).cloned(),
+        }
+    }
+
     /// Whether a value of a type can stand where this is declared.
     pub fn accepts(&self, ty: &Type) -> bool {
         match (self, ty) {

@@ -105,8 +105,7 @@ impl Checker<'_> {
             }
         };
         let factor = Expr { kind: ExprKind::Number(unit_found.factor), span };
-        let (left, right) = (Box::new(value), Box::new(factor));
-        (ExprKind::Binary { operator: BinaryOp::Multiply, left, right, int: false }, scaled)
+        (operation(BinaryOp::Multiply, [value, factor], &scaled), scaled)
     }
 
     fn tuple(&mut self, parts: &[ast::Expr], span: Span) -> (ExprKind, Type) {
@@ -188,8 +187,7 @@ impl Checker<'_> {
             Some(ty) => ty,
             None => return (ExprKind::Invalid, Type::Invalid),
         };
-        let int = matches!(ty, Type::Scalar(Element::Int) | Type::Tuple(_, Element::Int));
-        (ExprKind::Binary { operator, left: Box::new(left), right: Box::new(right), int }, ty)
+        (operation(operator, [left, right], &ty), ty)
     }
 
     /// The type of an operation; none where it is wrong, and was reported.
@@ -282,6 +280,17 @@ impl Checker<'_> {
             self.report(errors::exponent(at));
         }
         dim.map(Element::Quantity)
+    }
+}
+
+/// An operation that gives a value of a type. What gives a number, but for comparisons, is of numbers.
+fn operation(operator: BinaryOp, [left, right]: [Expr; 2], ty: &Type) -> ExprKind {
+    let (left, right) = (Box::new(left), Box::new(right));
+    match ty {
+        Type::Scalar(element) => {
+            ExprKind::Arithmetic { operator, left, right, int: *element == Element::Int }
+        }
+        _ => ExprKind::Binary { operator, left, right },
     }
 }
 

@@ -135,6 +135,11 @@ impl Checker<'_> {
             let values = values.into_iter().zip(types).collect();
             return self.texture(function, parameters, arguments, values, span);
         }
+        if function == Function::Turn && arguments.len() > 1 {
+            let diagnostic = errors::turn_axes(&self.turns(arguments), span);
+            self.report(diagnostic);
+            return (ExprKind::Invalid, Type::Invalid);
+        }
         let axis = match self.argument_names(function, arguments) {
             Ok(axis) => axis,
             Err(diagnostic) => {
@@ -149,11 +154,29 @@ impl Checker<'_> {
             return (ExprKind::Invalid, Type::Invalid);
         };
         let mut values = values;
+        let numbers = types.iter().chain([&ty]).all(|ty| matches!(ty, Type::Scalar(_)));
+        if numbers {
+            return (ExprKind::Compute { function, arguments: values }, ty);
+        }
         if let Some(axis) = axis {
             // `turn` takes its axis as a first argument from here on.
             values.insert(0, Expr { kind: ExprKind::Number(axis as f64), span });
         }
         (ExprKind::Call { function, arguments: values }, ty)
+    }
+
+    /// The turns that a `turn` about several axes means, each as it would be written. One that names no axis is about
+    /// the next one, as where three angles stand together; by nothing, it is left out.
+    fn turns(&self, arguments: &[Argument]) -> Vec<String> {
+        let axes = ["x", "y", "z"];
+        let turns = arguments.iter().zip(axes).filter_map(|(argument, axis)| {
+            let named = argument.name.as_ref().map(|name| name.text.as_str());
+            let axis = named.filter(|name| axes.contains(name)).unwrap_or(axis);
+            let angle = self.text(argument.value.span).trim();
+            let angle = if angle.len() > 40 || angle.contains('\n') { "…" } else { angle };
+            (angle != "0").then(|| format!("turn({axis}: {angle})"))
+        });
+        turns.collect()
     }
 
     /// Only `turn` names its argument: gives the axis.

@@ -381,8 +381,13 @@ impl Checker<'_> {
             return Expr::invalid(value.span);
         }
         if !accepts(field.ty, &ty) {
+            let named = self.quoted(value).filter(|(_, ty)| accepts(field.ty, ty));
             let text = self.text(value.span);
-            self.report(errors::mismatch(field.name, field.ty, value.span, text, &ty));
+            let diagnostic = errors::mismatch(field.name, field.ty, value.span, text, &ty);
+            self.report(match named {
+                Some((name, _)) => errors::name_in_quotes(diagnostic, &name),
+                None => diagnostic,
+            });
             return Expr::invalid(value.span);
         }
         if let Type::Made(making) = ty {

@@ -144,7 +144,19 @@ impl<'a> Checker<'a> {
         });
         let params: Vec<&str> = params.collect();
         for setting in self.settings.iter().filter(|setting| !params.contains(&setting.name.text.as_str())) {
-            self.report(errors::no_such_param(&setting.name, &params));
+            let ty = self.type_alone(&setting.value).and_then(|ty| Declared::of(&ty));
+            let value = self.text(setting.value.span);
+            self.report(errors::no_such_param(&setting.name, &params, ty.as_ref(), value));
         }
+    }
+
+    /// The type of an expression where only what is built in is known; what is wrong with it is not reported.
+    fn type_alone(&mut self, value: &ast::Expr) -> Option<Type> {
+        let reported = self.diagnostics.len();
+        self.begin_frame();
+        let (_, ty) = self.infer(value);
+        self.end_frame();
+        self.diagnostics.truncate(reported);
+        (ty != Type::Invalid).then_some(ty)
     }
 }

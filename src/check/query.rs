@@ -56,7 +56,7 @@ impl Checker<'_> {
             }
         }
         let (left, right) = (Box::new(left), Box::new(right));
-        let kind = ExprKind::Binary { operator: ast::BinaryOp::To, left, right, int: false };
+        let kind = ExprKind::Binary { operator: ast::BinaryOp::To, left, right };
         if sound { (kind, Type::list(Type::Scalar(Element::Int))) } else { INVALID }
     }
 

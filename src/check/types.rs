@@ -198,14 +198,14 @@ impl Type {
                 format!("{} `{}`", article(*kind), kind.get().name)
             }
             Type::Made(Making { kind: Kind::BuiltIn(kind), .. }) => {
-                format!("{} `{}` that is not drawn", article(*kind), kind.get().name)
+                format!("{} `{}` prototype", article(*kind), kind.get().name)
             }
             Type::Thing(Making { kind: Kind::BuiltIn(kind), .. }) => {
                 format!("{} `{}` of the scene", article(*kind), kind.get().name)
             }
             Type::Made(Making { kind: Kind::Material, .. }) => "a material".into(),
-            Type::Made(Making { kind: Kind::Part(_), .. }) => "a part that is not drawn".into(),
-            Type::Made(_) => "a thing that is not drawn".into(),
+            Type::Made(Making { kind: Kind::Part(_), .. }) => "a prototype of a part".into(),
+            Type::Made(_) => "a prototype".into(),
             Type::Thing(_) => "a part of the scene".into(),
             Type::List(item) if **item == Type::Invalid => "an empty list".into(),
             Type::List(_) => "a list".into(),

@@ -1,6 +1,7 @@
 //! Names that nothing declares: what was probably meant, by what is wanted where they stand.
 
 use super::declared::Declared;
+use super::types::Type;
 use super::{Checker, errors};
 use crate::diagnostic::Diagnostic;
 use crate::schema::FieldType;
@@ -32,6 +33,13 @@ impl Checker<'_> {
             Declared::Field(wanted) => self.unknown_value(*wanted, value),
             _ => None,
         }
+    }
+
+    /// The declared name that a text in quotes is, and what it names.
+    pub(super) fn quoted(&mut self, value: &ast::Expr) -> Option<(Name, Type)> {
+        let Tree::Text(text) = &value.kind else { return None };
+        let found = self.is_declared(text).then(|| self.lookup(text))??;
+        Some((Name { text: text.clone(), span: value.span }, found.ty))
     }
 
     /// Whether a place lies in a setting from outside.

@@ -1,8 +1,9 @@
 //! Things as they are put into the picture: flat, each with the group it stands in and where it came from.
 
-use super::value::{Given, Made, Placed, ThingId, Value};
+use super::draw::Fresh;
+use super::value::{Fields, Given, Group, Made, Placed, Site, ThingId, Value};
 use crate::math::DAffine3;
-use crate::schema::{Category, placed};
+use crate::schema::{Category, KindId, placed};
 use crate::span::Span;
 use std::ops::Range;
 use std::rc::Rc;
@@ -15,6 +16,13 @@ pub(super) const NONE: u32 = u32::MAX;
 pub(super) struct Built {
     /// In the order written.
     pub(super) things: Vec<Stored>,
+    /// Where things were made.
+    sites: Vec<Rc<Site>>,
+    /// The values of their fields.
+    pub(super) values: Vec<Value>,
+    /// The last groups that were copied, each with where its sites and its values begin here: another copy shares
+    /// them.
+    copies: Vec<(Rc<Group>, [u32; 2])>,
     /// Groups, each behind the one it stands in.
     pub(super) groups: Vec<GroupPlace>,
     /// Which things something that was named has become.
@@ -25,14 +33,17 @@ pub(super) struct Built {
     pub(super) solo: Vec<ThingId>,
     /// Chains of uses: a place, and the link of the use around it.
     pub(super) links: Vec<(Span, u32)>,
-    /// Whether a field of a thing means a place of this scene or group.
-    pub(super) aims: bool,
 }
 
-/// One thing.
-#[derive(Clone, Debug, PartialEq)]
+/// One thing. There are many: what they share is kept once, and their values one behind the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stored {
-    pub(super) made: Rc<Made>,
+    /// Its kind, and what is the same for all that were made there: an index into [`Built::sites`].
+    site: u32,
+    /// Where its values begin in [`Built::values`].
+    values: u32,
+    /// Of which row, if it was made of rows.
+    row: u32,
     /// The group it stands in.
     pub(super) group: u32,
     /// Where it came from.
@@ -59,6 +70,10 @@ pub(super) struct Shift {
     pub(super) groups: u32,
 }
 
+/// How many of the last links, sites and copies are looked through for the one that is needed: a loop's body seldom has more
+/// statements.
+const RECENT: usize = 8;
+
 impl Built {
     /// Nothing, in the group 0.
     pub(super) fn new() -> Built {
@@ -75,17 +90,59 @@ impl Built {
     }
 
     /// Says where a group stands, and what it is made of.
-    pub(super) fn place_group(&mut self, group: u32, made: &Made) {
+    pub(super) fn place_group(&mut self, group: u32, made: Fields) {
         let place = &mut self.groups[group as usize];
         place.placement = placement(made);
         place.material = material(made);
         place.grain = grain(made);
     }
 
+    /// Adds a thing to a group.
+    pub(super) fn put(&mut self, fresh: Fresh, group: u32, link: u32) {
+        let site = self.site(&fresh);
+        self.things.push(Stored { site, values: fresh.values, row: fresh.row, group, link });
+    }
+
+    /// Where a thing was made; the same again where that was so just now, as in a loop.
+    fn site(&mut self, fresh: &Fresh) -> u32 {
+        let from = self.sites.len().saturating_sub(RECENT);
+        let known = self.sites[from..].iter().rposition(|site| fresh.is_of(site));
+        if let Some(known) = known {
+            return (from + known) as u32;
+        }
+        self.sites.push(fresh.site());
+        self.sites.len() as u32 - 1
+    }
+
+    /// Adds what was made already.
+    pub(super) fn put_again(&mut self, made: &Made, group: u32, link: u32) {
+        let (site, values) = (self.sites.len() as u32, self.values.len() as u32);
+        self.sites.push(made.site.clone());
+        self.values.extend_from_slice(&made.values);
+        self.things.push(Stored { site, values, row: made.row, group, link });
+    }
+
+    /// A thing with its fields.
+    pub(super) fn fields(&self, stored: &Stored) -> Fields<'_> {
+        let site = &self.sites[stored.site as usize];
+        let first = stored.values as usize;
+        let values = &self.values[first..first + site.mask.count_ones() as usize];
+        Fields { site, row: stored.row, values }
+    }
+
+    /// The newest thing by itself.
+    pub(super) fn last(&self) -> Rc<Made> {
+        let newest = self.things.last().expect("a thing was just put there");
+        self.fields(newest).keep()
+    }
+
+    /// The kind of a thing.
+    pub(super) fn kind(&self, stored: &Stored) -> KindId {
+        self.sites[stored.site as usize].kind
+    }
+
     /// A link of the chain of uses; the same again where it was added just now, as in a loop.
     pub(super) fn link(&mut self, span: Span, outer: u32) -> u32 {
-        /// A loop's body seldom has more statements.
-        const RECENT: usize = 8;
         let from = self.links.len().saturating_sub(RECENT);
         let known = self.links[from..].iter().rposition(|link| *link == (span, outer));
         if let Some(known) = known {
@@ -101,8 +158,9 @@ impl Built {
         ThingId(self.places.len() as u32 - 1)
     }
 
-    /// Copies what another holds into a group of this, as used by way of a link.
-    pub(super) fn append(&mut self, other: &Built, parent: u32, link: u32, levels: [usize; 2]) -> Shift {
+    /// Copies what a group holds into one of this, which is at a level, as used by way of a link.
+    pub(super) fn append(&mut self, held: &Rc<Group>, parent: u32, link: u32, level: usize) -> Shift {
+        let other = &held.built;
         let shift = Shift { places: self.places.len() as u32, groups: self.groups.len() as u32 };
         let (first, first_link) = (self.things.len() as u32, self.links.len() as u32);
         self.groups.extend(other.groups.iter().map(|group| {
@@ -118,13 +176,34 @@ impl Built {
                 .iter()
                 .map(|&(span, outer)| (span, if outer == NONE { link } else { outer + first_link })),
         );
+        let [first_site, first_value] = self.copy_values(held, shift, level);
         self.things.extend(other.things.iter().map(|thing| Stored {
-            made: if other.aims { aim_again(&thing.made, shift, levels) } else { thing.made.clone() },
+            site: thing.site + first_site,
+            values: thing.values + first_value,
+            row: thing.row,
             group: thing.group + shift.groups,
             link: if thing.link == NONE { link } else { thing.link + first_link },
         }));
-        self.aims |= other.aims;
         shift
+    }
+
+    /// Copies where the things of a group were made, and the values of their fields. Gives where they begin here.
+    fn copy_values(&mut self, held: &Rc<Group>, shift: Shift, level: usize) -> [u32; 2] {
+        if let Some((_, firsts)) = self.copies.iter().find(|(copied, _)| Rc::ptr_eq(copied, held)) {
+            return *firsts;
+        }
+        let firsts = [self.sites.len() as u32, self.values.len() as u32];
+        let levels = [held.level, level];
+        self.sites.extend_from_slice(&held.built.sites);
+        self.values.extend(held.built.values.iter().map(|value| aim_again(value, shift, levels)));
+        // What aims does so at things of its own copy.
+        if !held.aims {
+            if self.copies.len() == RECENT {
+                self.copies.remove(0);
+            }
+            self.copies.push((held.clone(), firsts));
+        }
+        firsts
     }
 
     /// Brings runs of things, each with the index of its statement, into the order written. `places` is the first
@@ -162,8 +241,8 @@ impl Built {
 }
 
 /// The placement that a thing's own fields give: `place`, then `at`.
-pub(super) fn placement(made: &Made) -> DAffine3 {
-    if !matches!(made.kind.get().category, Category::Shape | Category::Group) {
+pub(super) fn placement(made: Fields) -> DAffine3 {
+    if !matches!(made.kind().get().category, Category::Shape | Category::Group) {
         return DAffine3::IDENTITY;
     }
     let place = made.read(placed::PLACE).unwrap_or(DAffine3::IDENTITY);
@@ -174,37 +253,28 @@ pub(super) fn placement(made: &Made) -> DAffine3 {
 }
 
 /// Where the space of textures lies that a thing's own field gives.
-pub(super) fn grain(made: &Made) -> Option<DAffine3> {
-    if !matches!(made.kind.get().category, Category::Shape | Category::Group) {
+pub(super) fn grain(made: Fields) -> Option<DAffine3> {
+    if !matches!(made.kind().get().category, Category::Shape | Category::Group) {
         return None;
     }
     made.given(placed::GRAIN).map(|(grain, _)| grain)
 }
 
 /// The material that a thing's own field gives.
-pub(super) fn material(made: &Made) -> Option<Given> {
-    if !matches!(made.kind.get().category, Category::Shape | Category::Group) {
+pub(super) fn material(made: Fields) -> Option<Given> {
+    if !matches!(made.kind().get().category, Category::Shape | Category::Group) {
         return None;
     }
-    let (value, span) = made.find(placed::MATERIAL.index(made.kind))?;
+    let (value, span) = made.find(placed::MATERIAL.index(made.kind()))?;
     Some(Given { value: value.clone(), span })
 }
 
-/// A thing whose fields mean what was copied with it.
-fn aim_again(made: &Rc<Made>, shift: Shift, [from, to]: [usize; 2]) -> Rc<Made> {
-    let aims = |value: &Value| matches!(value, Value::Thing(placed) if placed.level == from);
-    if !made.values.iter().any(aims) {
-        return made.clone();
+/// A value that means what was copied with it.
+fn aim_again(value: &Value, shift: Shift, [from, to]: [usize; 2]) -> Value {
+    match value {
+        Value::Thing(placed) if placed.level == from => Value::Thing(Rc::new(moved(placed, shift, to))),
+        value => value.clone(),
     }
-    let mut again = (**made).clone();
-    for value in &mut again.values {
-        if let Value::Thing(placed) = value
-            && placed.level == from
-        {
-            *value = Value::Thing(Rc::new(moved(placed, shift, to)));
-        }
-    }
-    Rc::new(again)
 }
 
 /// A thing as it is after it was copied.

@@ -1,9 +1,9 @@
 //! Things: made with their fields, and put into the picture or kept as a prototype.
 
-use super::built::{Built, NONE, Stored};
-use super::value::{Group, Inside, PartValue};
+use super::built::{Built, NONE};
+use super::value::{Group, Inside, PartValue, Site};
 use super::{Evaluator, Given, Made, Placed, Value, errors};
-use crate::check::{Base, FieldPlace, Make};
+use crate::check::{Base, FieldPlace, Make, Written};
 use crate::schema::{Category, KindId, PLACED, group};
 use crate::span::Span;
 use smallvec::SmallVec;
@@ -14,6 +14,38 @@ pub(super) enum Begun {
     Made(KindId, Option<Rc<Made>>),
     Part(Rc<PartValue>),
     Invalid,
+}
+
+/// A thing that was just made, and is to be kept somewhere. Its values are the last of the innermost buffer.
+pub(super) struct Fresh<'w> {
+    kind: KindId,
+    mask: u64,
+    written: &'w Rc<Written>,
+    base: Option<Rc<Made>>,
+    /// Of which row, if it is made of rows.
+    pub(super) row: u32,
+    /// Where its values begin.
+    pub(super) values: u32,
+}
+
+impl Fresh<'_> {
+    /// Whether it was made where others were.
+    pub(super) fn is_of(&self, site: &Site) -> bool {
+        let same_base = match (&self.base, &site.base) {
+            (Some(base), Some(other)) => Rc::ptr_eq(base, other),
+            (None, None) => true,
+            _ => false,
+        };
+        same_base && Rc::ptr_eq(self.written, &site.written)
+    }
+
+    /// What it has in common with others that are made there.
+    pub(super) fn site(&self) -> Rc<Site> {
+        let Fresh { kind, mask, .. } = *self;
+        // What a prototype holds, the thing holds.
+        let group = self.base.as_ref().and_then(|base| base.site.group.clone());
+        Rc::new(Site { kind, mask, written: self.written.clone(), base: self.base.clone(), group })
+    }
 }
 
 impl<'p> Evaluator<'p> {
@@ -27,7 +59,7 @@ impl<'p> Evaluator<'p> {
                 if let Some(block) = &make.block {
                     self.block(block, false);
                 }
-                Value::Made(self.assemble(kind, base, make))
+                Value::Made(Rc::new(self.made(kind, base, make)))
             }
         }
     }
@@ -37,7 +69,7 @@ impl<'p> Evaluator<'p> {
         match &make.base {
             Base::Kind(kind) => Begun::Made(*kind, None),
             Base::Prototype(prototype) => match self.expr(prototype) {
-                Value::Made(base) => Begun::Made(base.kind, Some(base)),
+                Value::Made(base) => Begun::Made(base.kind(), Some(base)),
                 Value::Part(part) => Begun::Part(part),
                 _ => Begun::Invalid,
             },
@@ -54,10 +86,10 @@ impl<'p> Evaluator<'p> {
         }
     }
 
-    /// A thing with its fields, each in its range.
-    fn assemble(&mut self, kind: KindId, base: Option<Rc<Made>>, make: &Make) -> Rc<Made> {
+    /// A thing with its fields, each in its range, to be put into the innermost buffer.
+    fn assemble<'w>(&mut self, kind: KindId, base: Option<Rc<Made>>, make: &'w Make) -> Fresh<'w> {
+        let values = self.out().values.len() as u32;
         let mut mask = 0;
-        let mut values = SmallVec::with_capacity(make.fields.len());
         let common = kind.get().fields.len();
         for (place, expr) in &make.fields {
             let index = match *place {
@@ -65,20 +97,23 @@ impl<'p> Evaluator<'p> {
                 FieldPlace::Placed(index) => common + index,
                 FieldPlace::Param(_) => continue,
             };
-            let value = self.expr(expr);
             mask |= 1 << index;
-            let field = kind.field(index);
-            values.push(match errors::out_of_range(kind, field, &value, expr.span) {
-                Some(diagnostic) => self.report(diagnostic),
-                None => value,
-            });
+            let value = self.expr(expr);
+            let problem = errors::out_of_range(kind, kind.field(index), &value, expr.span);
+            self.out().values.push(value);
+            if let Some(problem) = problem {
+                let refused = self.report(problem);
+                self.out().values.last_mut().into_iter().for_each(|last| *last = refused.clone());
+            }
         }
-        let base = base.map(flat);
-        let span = self.here(make.written.span);
-        // What a prototype holds, the thing holds; a group adds its own.
-        let group = base.as_ref().and_then(|base| base.group.clone());
-        let (written, row) = (make.written.clone(), self.row_index());
-        Rc::new(Made { kind, span, mask, values, written, row, base, group })
+        Fresh { kind, mask, written: &make.written, base: base.map(flat), row: self.row_index(), values }
+    }
+
+    /// A thing with its fields, by itself.
+    fn made(&mut self, kind: KindId, base: Option<Rc<Made>>, make: &Make) -> Made {
+        let fresh = self.assemble(kind, base, make);
+        let values = self.out().values.drain(fresh.values as usize..).collect();
+        Made { site: fresh.site(), row: fresh.row, values }
     }
 
     /// Puts a thing into the picture. Gives what its name means, where that is wanted.
@@ -98,8 +133,13 @@ impl<'p> Evaluator<'p> {
                     if let Some(block) = &make.block {
                         self.block(block, false);
                     }
-                    let made = self.assemble(kind, base, make);
-                    self.emit(made, span).map(|made| (made, None, Default::default()))
+                    let fresh = self.assemble(kind, base, make);
+                    let drawn = self.emit(fresh, span);
+                    if !named {
+                        self.incomplete |= !drawn;
+                        return None;
+                    }
+                    drawn.then(|| (self.out().last(), None, Default::default()))
                 }
             },
         };
@@ -114,19 +154,17 @@ impl<'p> Evaluator<'p> {
         })
     }
 
-    /// Adds a thing to the innermost buffer.
-    pub(super) fn emit(&mut self, made: Rc<Made>, span: Span) -> Option<Rc<Made>> {
+    /// Adds a thing to the innermost buffer. False where it is one too many.
+    pub(super) fn emit(&mut self, fresh: Fresh, span: Span) -> bool {
         if !self.count_things(1, span) {
-            return None;
+            return false;
         }
-        let (outer, group, level) = (self.link, self.group, self.buffers.len() - 1);
-        let aims = level > 0 && made.values.iter().any(|value| matches!(value, Value::Thing(_)));
+        let (outer, group) = (self.link, self.group);
         let out = self.out();
         // The text of a prototype is not where the thing was put into the picture.
         let link = out.link(span, outer);
-        out.aims |= aims;
-        out.things.push(Stored { made: made.clone(), group, link });
-        Some(made)
+        out.put(fresh, group, link);
+        true
     }
 
     /// A group in the picture: what its prototype holds, then its own members.
@@ -143,10 +181,10 @@ impl<'p> Evaluator<'p> {
         let mut link = self.out().link(span, outer_link);
         let mut inside: Inside = None;
         let mut shift = Default::default();
-        let held = base.as_ref().and_then(|base| base.group.clone());
+        let held = base.as_ref().and_then(|base| base.site.group.clone());
         let group = match (&base, &held) {
             (Some(base), Some(held)) => {
-                link = self.out().link(base.span, link);
+                link = self.out().link(base.span(), link);
                 let group = self.out().groups.len() as u32;
                 shift = self.append(held, outer, link, span);
                 inside = held.inside.clone();
@@ -164,30 +202,30 @@ impl<'p> Evaluator<'p> {
                 shift = Default::default();
             }
         }
-        let made = self.assemble(group::KIND, base, make);
+        let made = self.made(group::KIND, base, make);
         (self.group, self.link) = (outer, outer_link);
         self.leave();
-        self.out().place_group(group, &made);
-        Some((made, inside, shift))
+        self.out().place_group(group, made.fields());
+        Some((Rc::new(made), inside, shift))
     }
 
     /// Copies what a group holds into the innermost buffer, where it becomes its newest group.
-    fn append(&mut self, held: &Group, parent: u32, link: u32, span: Span) -> super::built::Shift {
+    fn append(&mut self, held: &Rc<Group>, parent: u32, link: u32, span: Span) -> super::built::Shift {
         // Groups count as well: those of nothing multiply like others.
         let count = held.built.things.len() + held.built.groups.len();
         if !self.count_things(count, span) || !self.step(count as u64, span) {
             self.out().begin_group(parent);
             return super::built::Shift::default();
         }
-        let levels = [held.level, self.buffers.len() - 1];
-        self.out().append(&held.built, parent, link, levels)
+        let level = self.buffers.len() - 1;
+        self.out().append(held, parent, link, level)
     }
 
     /// A group that is not drawn.
     fn group_value(&mut self, make: &Make, base: Option<Rc<Made>>) -> Value {
-        let held = base.as_ref().and_then(|base| base.group.clone());
+        let held = base.as_ref().and_then(|base| base.site.group.clone());
         if make.block.is_none() && held.is_some() {
-            return Value::Made(self.assemble(group::KIND, base, make));
+            return Value::Made(Rc::new(self.made(group::KIND, base, make)));
         }
         if !self.enter(make.written.span) {
             return Value::Invalid;
@@ -207,11 +245,14 @@ impl<'p> Evaluator<'p> {
                 inside = self.inside(own);
             }
         }
-        let mut made = self.assemble(group::KIND, base, make);
+        let mut made = self.made(group::KIND, base, make);
         let built = self.end_buffer(outer);
         self.leave();
-        Rc::make_mut(&mut made).group = Some(Rc::new(Group { built, level: self.buffers.len(), inside }));
-        Value::Made(made)
+        if let Some(site) = Rc::get_mut(&mut made.site) {
+            let aims = built.values.iter().any(|value| matches!(value, Value::Thing(_)));
+            site.group = Some(Rc::new(Group { built, level: self.buffers.len(), aims, inside }));
+        }
+        Value::Made(Rc::new(made))
     }
 
     /// Begins to put things aside. [`Evaluator::end_buffer`] gives them.
@@ -248,26 +289,27 @@ impl<'p> Evaluator<'p> {
 fn flat(made: Rc<Made>) -> Rc<Made> {
     /// Deeper chains are rare, and would make fields slow to find.
     const DEPTH: usize = 4;
-    let depth = std::iter::successors(Some(&made), |made| made.base.as_ref()).count();
+    let depth = std::iter::successors(Some(&made), |made| made.site.base.as_ref()).count();
     if depth < DEPTH {
         return made;
     }
     let mut mask = 0;
     let mut values = SmallVec::new();
     let mut spans = vec![];
-    for index in 0..made.kind.field_count() {
-        if let Some((value, span)) = made.find(index) {
+    for index in 0..made.kind().field_count() {
+        if let Some((value, span)) = made.fields().find(index) {
             mask |= 1 << index;
             values.push(value.clone());
             spans.push(span);
         }
     }
     let written = crate::check::Written {
-        name: made.written.name.clone(),
-        span: made.span,
+        name: made.site.written.name.clone(),
+        span: made.span(),
         fields: spans.into(),
         rows: None,
     };
-    let (kind, span, group) = (made.kind, made.span, made.group.clone());
-    Rc::new(Made { kind, span, mask, values, written: Rc::new(written), row: 0, base: None, group })
+    let (kind, group) = (made.kind(), made.site.group.clone());
+    let site = Rc::new(Site { kind, mask, written: Rc::new(written), base: None, group });
+    Rc::new(Made { site, row: 0, values })
 }

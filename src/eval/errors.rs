@@ -35,7 +35,19 @@ fn show_value(value: &Value) -> String {
 }
 
 /// What the range of a field refuses, or none where the value lies in it.
+#[inline]
 pub(super) fn out_of_range(kind: KindId, field: &Field, value: &Value, span: Span) -> Option<Diagnostic> {
+    match value {
+        // Most are.
+        Value::Number(x) if field.range.contains(*x) => None,
+        Value::Tuple(v) if field.range.contains(v.min_element()) && field.range.contains(v.max_element()) => {
+            None
+        }
+        _ => refused(kind, field, value, span),
+    }
+}
+
+fn refused(kind: KindId, field: &Field, value: &Value, span: Span) -> Option<Diagnostic> {
     if let Value::Texture(texture) = value {
         let parts = texture.parts.iter().flatten();
         return parts.into_iter().find_map(|part| out_of_range(kind, field, &part.value, part.span));

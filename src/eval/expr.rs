@@ -17,26 +17,28 @@ impl Evaluator<'_> {
     pub(super) fn value(&mut self, kind: &ExprKind, span: Span) -> Value {
         match kind {
             ExprKind::Invalid => Value::Invalid,
-            ExprKind::Number(value) => self.finite(Value::Number(*value), span),
+            ExprKind::Number(_)
+            | ExprKind::RowNumber { .. }
+            | ExprKind::Component { .. }
+            | ExprKind::Arithmetic { .. }
+            | ExprKind::Compute { .. } => self.computed(kind, span).map_or(Value::Invalid, Value::Number),
             ExprKind::Bool(value) => Value::Bool(*value),
             ExprKind::Text(text) => Value::Text(text.clone()),
             ExprKind::Color(color) => Value::Color(*color),
-            ExprKind::RowNumber { literal, factor } => {
-                self.finite(Value::Number(self.row_literal(*literal) * factor), span)
-            }
             ExprKind::RowColor { literal } => {
                 Value::Color(color::from_bits(self.row_literal(*literal) as u32))
             }
             ExprKind::Word(word) => Value::Word(word),
             ExprKind::Tuple(parts) => {
-                let mut tuple = DVec3::ZERO;
-                for (axis, part) in parts.iter().enumerate() {
-                    match self.expr(part) {
-                        Value::Number(x) => tuple[axis] = x,
-                        _ => return Value::Invalid,
-                    }
+                let [x, y, z] = match &parts[..] {
+                    [x, y] => [self.number(x), self.number(y), Some(0.0)],
+                    [x, y, z] => [self.number(x), self.number(y), self.number(z)],
+                    _ => [None; 3],
+                };
+                match (x, y, z) {
+                    (Some(x), Some(y), Some(z)) => Value::Tuple(DVec3::new(x, y, z)),
+                    _ => Value::Invalid,
                 }
-                Value::Tuple(tuple)
             }
             ExprKind::Name { up, slot } => {
                 self.frame.outer(*up).map_or(Value::Invalid, |frame| frame.get(*slot))
@@ -65,17 +67,13 @@ impl Evaluator<'_> {
             ExprKind::CallDeclared { function, around, arguments } => {
                 self.call_declared(*function, *around, arguments, span)
             }
-            ExprKind::Component { value, axis } => match self.expr(value) {
-                Value::Tuple(tuple) => Value::Number(tuple[*axis]),
-                _ => Value::Invalid,
-            },
             ExprKind::Unary { operator, operand } => match (operator, self.expr(operand)) {
                 (UnaryOp::Negate, Value::Number(x)) => Value::Number(-x),
                 (UnaryOp::Negate, Value::Tuple(v)) => Value::Tuple(-v),
                 (UnaryOp::Not, Value::Bool(x)) => Value::Bool(!x),
                 _ => Value::Invalid,
             },
-            ExprKind::Binary { operator, left, right, int } => {
+            ExprKind::Binary { operator, left, right } => {
                 let left = self.expr(left);
                 // What follows `and` or `or` is asked only where it matters.
                 match (operator, &left) {
@@ -87,14 +85,9 @@ impl Evaluator<'_> {
                     return self.to(&left, &right, span);
                 }
                 let result = binary(*operator, &left, &right);
-                match &result {
-                    Value::Number(x) if *int && x.is_finite() && x.abs() > MAX_INT => {
-                        self.report(errors::inexact(span))
-                    }
-                    result if !is_finite(result) => {
-                        self.report(errors::not_finite(*operator, &left, &right, span))
-                    }
-                    _ => result,
+                match is_finite(&result) {
+                    true => result,
+                    false => self.report(errors::not_finite(*operator, &left, &right, span)),
                 }
             }
             ExprKind::Call { function, arguments } => {
@@ -118,6 +111,97 @@ impl Evaluator<'_> {
             }
             ExprKind::Make(make) => self.make(make),
         }
+    }
+
+    /// The value of an expression that is a number; none where it has an error. Numbers are most of what there is to
+    /// compute, and are handed on by themselves.
+    #[inline(always)]
+    pub(super) fn number(&mut self, expr: &Expr) -> Option<f64> {
+        match &expr.kind {
+            ExprKind::Number(x) if x.is_finite() => Some(*x),
+            ExprKind::Name { up: 0, slot } => self.frame.number(*slot),
+            _ => self.deeper_number(expr),
+        }
+    }
+
+    fn deeper_number(&mut self, expr: &Expr) -> Option<f64> {
+        match &expr.kind {
+            ExprKind::Number(_)
+            | ExprKind::RowNumber { .. }
+            | ExprKind::Component { .. }
+            | ExprKind::Arithmetic { .. }
+            | ExprKind::Compute { .. } => {
+                self.deeper(expr.span, |inside| inside.computed(&expr.kind, expr.span))?
+            }
+            _ => match self.expr(expr) {
+                Value::Number(x) => Some(x),
+                _ => None,
+            },
+        }
+    }
+
+    /// A number that is computed from others, or stands in the text.
+    #[inline(always)]
+    fn computed(&mut self, kind: &ExprKind, span: Span) -> Option<f64> {
+        match kind {
+            ExprKind::Number(x) => self.finite(*x, span),
+            ExprKind::RowNumber { literal, factor } => self.finite(self.row_literal(*literal) * factor, span),
+            ExprKind::Component { value, axis } => match self.expr(value) {
+                Value::Tuple(tuple) => Some(tuple[*axis]),
+                _ => None,
+            },
+            ExprKind::Arithmetic { operator, left, right, int } => {
+                let (left, right) = (self.number(left), self.number(right));
+                let (left, right) = (left?, right?);
+                let result = arithmetic(*operator, left, right);
+                if result.is_finite() && (!*int || result.abs() <= MAX_INT) {
+                    return Some(result);
+                }
+                self.beyond(*operator, [left, right], result, span)
+            }
+            ExprKind::Compute { function, arguments } => self.compute(*function, arguments, span),
+            _ => None,
+        }
+    }
+
+    /// Reports a result that is no number to go on with.
+    #[cold]
+    fn beyond(&mut self, operator: BinaryOp, operands: [f64; 2], result: f64, span: Span) -> Option<f64> {
+        let [left, right] = operands.map(Value::Number);
+        self.report(match result.is_finite() {
+            true => errors::inexact(span),
+            false => errors::not_finite(operator, &left, &right, span),
+        });
+        None
+    }
+
+    /// What a function of numbers gives.
+    fn compute(&mut self, function: Function, arguments: &[Expr], span: Span) -> Option<f64> {
+        /// Only a few functions take more, and those any number.
+        const FEW: usize = 4;
+        let (mut few, mut many) = ([0.0; FEW], vec![]);
+        let numbers = match few.get_mut(..arguments.len()) {
+            Some(few) => few,
+            None => {
+                many.resize(arguments.len(), 0.0);
+                &mut many[..]
+            }
+        };
+        for (number, argument) in numbers.iter_mut().zip(arguments) {
+            *number = self.number(argument)?;
+        }
+        let found = super::functions::compute(function, numbers);
+        if let Ok(number) = found
+            && number.is_finite()
+        {
+            return Some(number);
+        }
+        let values: Vec<Value> = numbers.iter().copied().map(Value::Number).collect();
+        self.report(match found {
+            Ok(_) => errors::call_not_finite(function, &values, span),
+            Err(what) => errors::outside_domain(function, what, &values, arguments[0].span),
+        });
+        None
     }
 
     fn list(&mut self, items: &[Expr], span: Span) -> Value {
@@ -171,8 +255,12 @@ impl Evaluator<'_> {
         }
     }
 
-    fn finite(&mut self, value: Value, span: Span) -> Value {
-        if is_finite(&value) { value } else { self.report(errors::number_not_finite(span)) }
+    fn finite(&mut self, x: f64, span: Span) -> Option<f64> {
+        if !x.is_finite() {
+            self.report(errors::number_not_finite(span));
+            return None;
+        }
+        Some(x)
     }
 }
 
@@ -190,7 +278,7 @@ fn binary(operator: BinaryOp, left: &Value, right: &Value) -> Value {
     use BinaryOp::*;
     use Value::{Bool, Color, Number, Transform, Tuple};
     match (left, right) {
-        (Number(a), Number(b)) => numbers(operator, *a, *b),
+        (Number(a), Number(b)) => compare(operator, *a, *b),
         (Tuple(a), Tuple(b)) => match operator {
             Add => Tuple(*a + *b),
             Subtract => Tuple(*a - *b),
@@ -227,21 +315,29 @@ fn binary(operator: BinaryOp, left: &Value, right: &Value) -> Value {
     }
 }
 
+/// Of two numbers; not a number where the operator gives none.
 #[inline]
-fn numbers(operator: BinaryOp, a: f64, b: f64) -> Value {
-    use BinaryOp::*;
-    use Value::{Bool, Number};
+fn arithmetic(operator: BinaryOp, a: f64, b: f64) -> f64 {
     match operator {
-        Add => Number(a + b),
-        Subtract => Number(a - b),
-        Multiply => Number(a * b),
-        Divide => Number(a / b),
+        BinaryOp::Add => a + b,
+        BinaryOp::Subtract => a - b,
+        BinaryOp::Multiply => a * b,
+        BinaryOp::Divide => a / b,
+        _ => f64::NAN,
+    }
+}
+
+#[inline]
+fn compare(operator: BinaryOp, a: f64, b: f64) -> Value {
+    use BinaryOp::*;
+    use Value::Bool;
+    match operator {
         Equal => Bool(a == b),
         NotEqual => Bool(a != b),
         Less => Bool(a < b),
         LessEqual => Bool(a <= b),
         Greater => Bool(a > b),
         GreaterEqual => Bool(a >= b),
-        Or | And | Pipe | To => Value::Invalid,
+        _ => Value::Invalid,
     }
 }

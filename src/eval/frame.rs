@@ -40,6 +40,15 @@ impl Frame {
         }
     }
 
+    /// The number in a slot.
+    #[inline(always)]
+    pub(super) fn number(&self, slot: usize) -> Option<f64> {
+        match self.values.borrow().get(slot) {
+            Some(Value::Number(x)) => Some(*x),
+            _ => None,
+        }
+    }
+
     #[inline]
     pub(super) fn set(&self, slot: usize, value: Value) {
         if let Some(place) = self.values.borrow_mut().get_mut(slot) {

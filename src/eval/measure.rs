@@ -33,14 +33,14 @@ impl Evaluator<'_> {
             Value::Thing(thing) => self.bounds_of_placed(thing, span),
             Value::Made(made) => {
                 let outer = self.begin_buffer();
-                match made.group.clone() {
+                match made.site.group.clone() {
                     Some(held) => {
-                        let link = super::built::NONE;
-                        let levels = [held.level, self.buffers.len() - 1];
-                        self.out().append(&held.built, 0, link, levels);
-                        self.out().place_group(1, made);
+                        let level = self.buffers.len() - 1;
+                        self.out().append(&held, 0, super::built::NONE, level);
+                        self.out().place_group(1, made.fields());
                     }
-                    None => drop(self.emit(made.clone(), span)),
+                    None if self.count_things(1, span) => self.out().put_again(made, 0, super::built::NONE),
+                    None => {}
                 }
                 self.bounds_of_buffer(outer, span)
             }
@@ -77,13 +77,14 @@ impl Evaluator<'_> {
         }
         let mut all = Bounds::EMPTY;
         for stored in &built.things[range.start as usize..range.end as usize] {
-            if !stored.made.is_sound() {
+            let made = built.fields(stored);
+            if !made.is_sound() {
                 return Value::Invalid;
             }
             let carried: DAffine3 = built.carries(stored.group, from);
             let thing = Thing {
-                made: stored.made.clone(),
-                world_from_object: carried * placement(&stored.made),
+                made,
+                world_from_object: carried * placement(made),
                 world_from_grain: None,
                 material: None,
                 origin: OriginId(0),
@@ -91,7 +92,7 @@ impl Evaluator<'_> {
             };
             match (self.measure)(&self.defaults, &thing) {
                 Ok(Reach::Nowhere) => {}
-                Ok(Reach::Endless) => return self.report(errors::endless_bounds(span, stored.made.span)),
+                Ok(Reach::Endless) => return self.report(errors::endless_bounds(span, made.span())),
                 Ok(Reach::Box(bounds)) => all = all.union(bounds),
                 Err(diagnostic) => return self.report(*diagnostic),
             }

@@ -29,7 +29,7 @@ pub use origin::Origins;
 pub use read::{Aim, Focus, Read};
 pub use texture::{MAX_TEXTURE_LEVELS, Paint, Pattern, Texture};
 pub use things::{Thing, Things};
-pub use value::{Given, Made, PartValue, Placed, ThingId, Value};
+pub use value::{Fields, Given, Made, PartValue, Placed, ThingId, Value};
 
 use crate::check::{Expr, ExprKind, Part, Program};
 use crate::diagnostic::{Code, Diagnostic};
@@ -170,18 +170,22 @@ impl<'p> Evaluator<'p> {
         match &expr.kind {
             ExprKind::Number(value) if value.is_finite() => Value::Number(*value),
             ExprKind::Name { up: 0, slot } => self.frame.get(*slot),
-            _ => self.deeper(expr),
+            _ => {
+                self.deeper(expr.span, |inside| inside.value(&expr.kind, expr.span)).unwrap_or(Value::Invalid)
+            }
         }
     }
 
-    /// The value of an expression that may hold others.
-    fn deeper(&mut self, expr: &Expr) -> Value {
+    /// Finds the value of an expression that may hold others; none where these go too deep.
+    #[inline(always)]
+    fn deeper<T>(&mut self, span: Span, find: impl FnOnce(&mut Self) -> T) -> Option<T> {
         if self.depth >= limits::MAX_DEPTH {
-            return self.halt(errors::too_deep(expr.span));
+            self.halt(errors::too_deep(span));
+            return None;
         }
         self.depth += 1;
-        let value = self.value(&expr.kind, expr.span);
+        let value = find(self);
         self.depth -= 1;
-        value
+        Some(value)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::built::Shift;
 use super::frame::Frame;
-use super::value::{Inside, PartValue};
+use super::value::{Inside, PartValue, Site};
 use super::{Evaluator, Given, Made, Value};
 use crate::check::{Around, Expr, FieldPlace, FileId, FunctionId, Make, PartId, Written};
 use crate::schema::{PLACED, group};
@@ -159,7 +159,7 @@ impl<'p> Evaluator<'p> {
         (self.group, self.link) = (outer, outer_link);
         self.leave();
         let made = Rc::new(as_group(placed, &written));
-        self.out().place_group(group, &made);
+        self.out().place_group(group, made.fields());
         Some((made, inside, Shift::default()))
     }
 
@@ -231,6 +231,7 @@ fn as_group(placed: [Option<Given>; PLACED.len()], written: &Written) -> Made {
         }
     }
     let own = Written { name: written.name.clone(), span: written.span, fields: spans.into(), rows: None };
-    let (span, written) = (own.span, Rc::new(own));
-    Made { kind: group::KIND, span, mask, values, written, row: 0, base: None, group: None }
+    let written = Rc::new(own);
+    let site = Rc::new(Site { kind: group::KIND, mask, written, base: None, group: None });
+    Made { site, row: 0, values }
 }

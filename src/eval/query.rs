@@ -28,11 +28,11 @@ impl<'p> Evaluator<'p> {
             Value::Made(made) => self.field_of(&made, field),
             Value::Thing(thing) => {
                 let found = self.field_of(&thing.made, field);
-                let at = FieldPlace::Index(placed::AT.index(thing.made.kind));
+                let at = FieldPlace::Index(placed::AT.index(thing.made.kind()));
                 match found {
                     // A point inside is said as it is seen from where the path begins.
                     Value::Tuple(point)
-                        if index_of(thing.made.kind, field) == index_of(thing.made.kind, at) =>
+                        if index_of(thing.made.kind(), field) == index_of(thing.made.kind(), at) =>
                     {
                         let carried = self.buffers.get(thing.level);
                         let carried = carried
@@ -55,11 +55,11 @@ impl<'p> Evaluator<'p> {
     }
 
     fn field_of(&mut self, made: &super::Made, field: FieldPlace) -> Value {
-        let Some(index) = index_of(made.kind, field) else { return Value::Invalid };
-        let known = made.kind.field(index);
-        let value = match made.find(index) {
+        let Some(index) = index_of(made.kind(), field) else { return Value::Invalid };
+        let known = made.kind().field(index);
+        let value = match made.fields().find(index) {
             Some((value, _)) => value.clone(),
-            None if matches!(known.default, Preset::Value(_)) => self.defaults.default(made.kind, index),
+            None if matches!(known.default, Preset::Value(_)) => self.defaults.default(made.kind(), index),
             None if known.name == "place" => Value::Transform(Rc::new(DAffine3::IDENTITY)),
             None => Value::Invalid,
         };

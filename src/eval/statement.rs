@@ -36,17 +36,11 @@ impl Evaluator<'_> {
     }
 
     fn statement(&mut self, statement: &Statement, definitions: bool) {
-        let span = statement.span;
-        let named = matches!(
-            statement.kind,
-            StatementKind::Define { .. }
-                | StatementKind::Param(_)
-                | StatementKind::Draw { slot: Some(_), .. }
-        );
-        if definitions && !named {
+        if definitions && !statement.names() {
             return;
         }
-        let first = self.out().things.len() as u32;
+        let span = statement.span;
+        let marked = (statement.off || statement.solo).then(|| self.out().things.len() as u32);
         match &statement.kind {
             StatementKind::Nothing => {}
             StatementKind::Invalid => self.incomplete = true,
@@ -74,7 +68,7 @@ impl Evaluator<'_> {
             }
             StatementKind::Assert { .. } => {}
         }
-        if statement.off || statement.solo {
+        if let Some(first) = marked {
             let id = self.out().place(first);
             let list = if statement.off { &mut self.out().off } else { &mut self.out().solo };
             list.push(id);

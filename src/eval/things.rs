@@ -2,13 +2,12 @@
 
 use super::built::{Built, NONE, grain, material, placement};
 use super::defaults::Defaults;
-use super::{Given, Made, Origins, Read, ThingId, Value};
+use super::{Fields, Given, Origins, Read, ThingId, Value};
 use crate::math::DAffine3;
 use crate::scene::OriginId;
 use crate::schema::{Key, KindId};
 use smol_str::SmolStr;
 use std::ops::Range;
-use std::rc::Rc;
 
 /// Everything that stands in the picture, groups taken apart, in the order written.
 #[derive(Debug)]
@@ -39,9 +38,9 @@ struct Group {
 
 /// One thing of the picture: a shape, a light or a block.
 #[derive(Clone, Debug)]
-pub struct Thing {
+pub struct Thing<'t> {
     /// Its kind and fields.
-    pub made: Rc<Made>,
+    pub made: Fields<'t>,
     /// Where it stands: its own placement and that of the groups around it.
     pub world_from_object: DAffine3,
     /// Where the space of its texture lies, if not where its own does.
@@ -89,26 +88,29 @@ impl Things {
     }
 
     /// Each in turn.
-    pub fn iter(&self) -> impl Iterator<Item = Thing> {
+    pub fn iter(&self) -> impl Iterator<Item = Thing<'_>> {
         (0..self.len()).map(|index| self.get(index))
     }
 
     /// Those of the kinds that are wanted, each with its index.
-    pub fn of(&self, wanted: impl Fn(KindId) -> bool) -> impl Iterator<Item = (usize, Thing)> {
+    pub fn of(&self, wanted: impl Fn(KindId) -> bool) -> impl Iterator<Item = (usize, Thing<'_>)> {
         let stored = self.built.things.iter().enumerate();
-        stored.filter(move |(_, stored)| wanted(stored.made.kind)).map(|(index, _)| (index, self.get(index)))
+        stored
+            .filter(move |(_, stored)| wanted(self.built.kind(stored)))
+            .map(|(index, _)| (index, self.get(index)))
     }
 
     /// The thing at an index.
-    pub fn get(&self, index: usize) -> Thing {
+    pub fn get(&self, index: usize) -> Thing<'_> {
         let stored = &self.built.things[index];
         let around = &self.groups[stored.group as usize];
-        let grain = grain(&stored.made).map(|grain| around.world_from_group * grain);
+        let made = self.built.fields(stored);
+        let grain = grain(made).map(|grain| around.world_from_group * grain);
         Thing {
-            world_from_object: around.world_from_group * placement(&stored.made),
+            world_from_object: around.world_from_group * placement(made),
             world_from_grain: grain.or(around.world_from_grain),
-            material: material(&stored.made).or_else(|| around.material.clone()),
-            made: stored.made.clone(),
+            material: material(made).or_else(|| around.material.clone()),
+            made,
             origin: OriginId(stored.link),
             hidden: self.hidden.as_ref().is_some_and(|hidden| hidden[index]),
         }
@@ -117,7 +119,7 @@ impl Things {
     /// The kinds of all things that are not left out.
     pub fn kinds(&self) -> impl Iterator<Item = KindId> {
         let shown = |index: &usize| !self.hidden.as_ref().is_some_and(|hidden| hidden[*index]);
-        (0..self.len()).filter(shown).map(|index| self.built.things[index].made.kind)
+        (0..self.len()).filter(shown).map(|index| self.built.kind(&self.built.things[index]))
     }
 
     /// Which things one that was named has become.
@@ -126,10 +128,10 @@ impl Things {
     }
 
     /// A field of a thing: as given, or else its default.
-    pub fn read<T: Read>(&self, made: &Made, key: Key<T>) -> T::Out {
+    pub fn read<T: Read>(&self, made: Fields, key: Key<T>) -> T::Out {
         match made.read(key) {
             Some(value) => value,
-            None => self.defaults.read(made.kind, key),
+            None => self.defaults.read(made.kind(), key),
         }
     }
 
@@ -139,9 +141,9 @@ impl Things {
     }
 }
 
-impl Thing {
+impl<'t> Thing<'t> {
     /// The name it was given.
-    pub fn name(&self) -> Option<&SmolStr> {
+    pub fn name(&self) -> Option<&'t SmolStr> {
         self.made.name()
     }
 }
@@ -152,7 +154,7 @@ fn hidden(built: &Built) -> Option<Vec<bool>> {
         return None;
     }
     use crate::schema::Category;
-    let block = |index: usize| built.things[index].made.kind.get().category == Category::Block;
+    let block = |index: usize| built.kind(&built.things[index]).get().category == Category::Block;
     let mut hidden: Vec<bool> =
         (0..built.things.len()).map(|index| !built.solo.is_empty() && !block(index)).collect();
     let range = |id: &ThingId| {

@@ -54,26 +54,35 @@ pub enum Value {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ThingId(pub u32);
 
-/// A thing with its fields, in the scene or not. What is the same for all that are made at one place is shared, and
-/// so is the prototype.
+/// A thing that is kept by itself: a prototype, or a value written in place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Made {
-    /// Its kind.
-    pub kind: KindId,
-    /// Where it was written.
-    pub span: Span,
-    /// Which fields were given here, a bit each by index in [`KindId::fields`].
-    pub(super) mask: u64,
-    /// Their values, in that order.
-    pub(super) values: SmallVec<[Value; 2]>,
-    /// What is the same for all that is made here.
-    pub(super) written: Rc<Written>,
+    pub(super) site: Rc<Site>,
     /// Of which row, if it was made of rows.
     pub(super) row: u32,
-    /// What it was made from.
+    /// The values of the fields that were given here, in the order of [`KindId::fields`].
+    pub(super) values: SmallVec<[Value; 2]>,
+}
+
+/// What is the same for all things that are made at one place from one prototype.
+#[derive(Debug, PartialEq)]
+pub(super) struct Site {
+    pub(super) kind: KindId,
+    /// Which fields are given here, a bit each by index in [`KindId::fields`].
+    pub(super) mask: u64,
+    pub(super) written: Rc<Written>,
+    /// What they are made from.
     pub(super) base: Option<Rc<Made>>,
     /// What a group holds.
     pub(super) group: Option<Rc<Group>>,
+}
+
+/// A thing with its fields, wherever these are kept.
+#[derive(Clone, Copy, Debug)]
+pub struct Fields<'t> {
+    pub(super) site: &'t Rc<Site>,
+    pub(super) row: u32,
+    pub(super) values: &'t [Value],
 }
 
 /// The members of a group that is not drawn.
@@ -83,6 +92,8 @@ pub(super) struct Group {
     pub(super) built: Built,
     /// Which of the buffers that were being filled it was.
     pub(super) level: usize,
+    /// Whether a field of a thing means another of them, or one around.
+    pub(super) aims: bool,
     /// The names inside, by slot.
     pub(super) inside: Inside,
 }
@@ -142,61 +153,95 @@ impl Made {
     /// A thing of a kind with nothing given.
     pub fn new(kind: KindId, span: Span) -> Made {
         let written = Rc::new(Written { name: None, span, fields: [].into(), rows: None });
-        Made { kind, span, mask: 0, values: SmallVec::new(), written, row: 0, base: None, group: None }
+        let site = Rc::new(Site { kind, mask: 0, written, base: None, group: None });
+        Made { site, row: 0, values: SmallVec::new() }
+    }
+
+    /// Its kind.
+    pub fn kind(&self) -> KindId {
+        self.site.kind
+    }
+
+    /// Where it was written.
+    pub fn span(&self) -> Span {
+        self.fields().span()
+    }
+
+    /// Its fields.
+    pub fn fields(&self) -> Fields<'_> {
+        Fields { site: &self.site, row: self.row, values: &self.values }
+    }
+}
+
+impl<'t> Fields<'t> {
+    /// The kind of the thing.
+    pub fn kind(self) -> KindId {
+        self.site.kind
+    }
+
+    /// Where it was written.
+    pub fn span(self) -> Span {
+        self.site.written.place(self.row, self.site.written.span)
+    }
+
+    /// The thing by itself.
+    pub fn keep(self) -> Rc<Made> {
+        Rc::new(Made { site: self.site.clone(), row: self.row, values: self.values.into() })
     }
 
     /// The field at an index of [`KindId::fields`] as given here or by the prototype.
-    pub(super) fn find(&self, index: usize) -> Option<(&Value, Span)> {
+    pub(super) fn find(self, index: usize) -> Option<(&'t Value, Span)> {
         let (made, rank) = self.giver(index)?;
-        Some((&made.values[rank], made.written.place(made.row, made.written.fields[rank])))
+        let written = &made.site.written;
+        Some((&made.values[rank], written.place(made.row, written.fields[rank])))
     }
 
     /// Which of this thing and its prototypes gives the field at an index, as which of its values.
-    fn giver(&self, index: usize) -> Option<(&Made, usize)> {
+    fn giver(self, index: usize) -> Option<(Fields<'t>, usize)> {
         let mut made = self;
-        while made.mask >> index & 1 == 0 {
-            made = made.base.as_deref()?;
+        while made.site.mask >> index & 1 == 0 {
+            made = made.site.base.as_ref()?.fields();
         }
-        Some((made, (made.mask & ((1 << index) - 1)).count_ones() as usize))
+        Some((made, (made.site.mask & ((1 << index) - 1)).count_ones() as usize))
     }
 
     /// A field as given, without its place, which takes time to find.
-    pub(super) fn read<T: Read>(&self, key: Key<T>) -> Option<T::Out> {
-        let (made, rank) = self.giver(key.index(self.kind))?;
+    pub(super) fn read<T: Read>(self, key: Key<T>) -> Option<T::Out> {
+        let (made, rank) = self.giver(key.index(self.kind()))?;
         T::read(&made.values[rank])
     }
 
     /// A field as given, with its place; none where it is not given, or has an error.
-    pub fn given<T: Read>(&self, key: Key<T>) -> Option<(T::Out, Span)> {
-        let (value, span) = self.find(key.index(self.kind))?;
+    pub fn given<T: Read>(self, key: Key<T>) -> Option<(T::Out, Span)> {
+        let (value, span) = self.find(key.index(self.kind()))?;
         Some((T::read(value)?, span))
     }
 
     /// The name it was given where it stands.
-    pub fn name(&self) -> Option<&SmolStr> {
-        self.written.name.as_ref()
+    pub fn name(self) -> Option<&'t SmolStr> {
+        self.site.written.name.as_ref()
     }
 
     /// Whether no field has an error, and none that must be given is missing.
-    pub fn is_sound(&self) -> bool {
+    pub fn is_sound(self) -> bool {
         let mut given = 0;
         let mut made = Some(self);
         while let Some(here) = made {
-            let mut index_bits = here.mask;
-            for value in &here.values {
+            let mut index_bits = here.site.mask;
+            for value in here.values {
                 let bit = index_bits & index_bits.wrapping_neg();
                 index_bits ^= bit;
                 if given & bit == 0 && !value.is_sound() {
                     return false;
                 }
             }
-            given |= here.mask;
-            made = here.base.as_deref();
+            given |= here.site.mask;
+            made = here.site.base.as_ref().map(|base| base.fields());
         }
         let missing = |(index, field): (usize, &crate::schema::Field)| {
             field.default == Preset::Required && given >> index & 1 == 0
         };
-        !self.kind.fields().enumerate().any(missing)
+        !self.kind().fields().enumerate().any(missing)
     }
 }
 
@@ -205,7 +250,7 @@ impl Value {
     pub fn is_sound(&self) -> bool {
         match self {
             Value::Invalid => false,
-            Value::Made(made) => made.is_sound(),
+            Value::Made(made) => made.fields().is_sound(),
             _ => true,
         }
     }

@@ -1,7 +1,7 @@
 //! The camera: where it stands, what it looks at, and its lens.
 
 use super::{Blocks, Extent, Lowering, errors, shape::unit};
-use crate::eval::{Aim, Focus, Made, ThingId};
+use crate::eval::{Aim, Fields, Focus, Made, ThingId};
 use crate::math::{DVec2, DVec3, atan2, sin, tan};
 use crate::scene::shape::Bounds;
 use crate::scene::{Camera, Projection};
@@ -24,24 +24,27 @@ impl Lowering<'_> {
         blocks: &Blocks,
         size: Option<[u32; 2]>,
     ) -> Option<(Camera, Option<f64>)> {
-        let made = blocks.camera.map_or_else(|| super::plain(camera::KIND), |thing| thing.made.clone());
+        let plain = super::plain(camera::KIND);
+        let made = blocks.camera.map_or(plain.fields(), |thing| thing.made);
         if !made.is_sound() {
             return None;
         }
-        let lens = self.lens(&made, blocks)?;
+        let lens = self.lens(made, blocks)?;
         let (projection, half_width) = match made.given(camera::WIDTH) {
             Some((_, width)) if lens.is_some() => {
-                let lens = blocks.lens.map(|lens| lens.made.span);
+                let lens = blocks.lens.map(|lens| lens.made.span());
                 self.report(errors::lens_of_parallel(lens.unwrap_or(width), width));
                 return None;
             }
             Some((width, _)) => (Projection::Orthographic, 0.5 * width),
-            None => (Projection::Perspective, tan(0.5 * self.fov(&made, lens.as_deref())?)),
+            None => {
+                (Projection::Perspective, tan(0.5 * self.fov(made, lens.as_ref().map(|lens| lens.fields()))?))
+            }
         };
         let [width, height] = size.unwrap_or([4, 3]).map(f64::from);
         let half_extent = DVec2::new(half_width, half_width * height / width);
 
-        self.out.marks.camera = blocks.camera.map(|thing| thing.made.span);
+        self.out.marks.camera = blocks.camera.map(|thing| thing.made.span());
         self.out.marks.from = made.given(camera::FROM).map(|(_, span)| span);
         self.out.marks.look = made.given(camera::LOOK).map(|(_, span)| span);
 
@@ -64,41 +67,41 @@ impl Lowering<'_> {
             }
         };
         if !(position.is_finite() && look.is_finite()) {
-            self.report(errors::beyond_view(made.span));
+            self.report(errors::beyond_view(made.span()));
             return None;
         }
-        let place = made.given(camera::FROM).map_or(made.span, |(_, span)| span);
+        let place = made.given(camera::FROM).map_or(made.span(), |(_, span)| span);
         let Some(forward) = unit(look - position) else {
             let look_place = made.given(camera::LOOK).map(|(_, span)| span);
             self.report(errors::looks_at_itself(place, look_place));
             return None;
         };
-        let (right, up) = self.upright(&made, forward)?;
+        let (right, up) = self.upright(made, forward)?;
         let (lens_radius, focus) = match &lens {
-            Some(lens) => self.opening(lens, position, forward, look)?,
+            Some(lens) => self.opening(lens.fields(), position, forward, look)?,
             None => (0.0, 1.0),
         };
         if self.overrides.exposure.is_none() {
             self.out.places.exposure = made.given(camera::EXPOSURE).map(|(_, span)| span);
         }
         let camera = Camera { projection, position, right, up, forward, half_extent, lens_radius, focus };
-        Some((camera, self.things.read(&made, camera::EXPOSURE)))
+        Some((camera, self.things.read(made, camera::EXPOSURE)))
     }
 
     /// The camera's own lens, or the one at the top level.
-    fn lens(&mut self, made: &Made, blocks: &Blocks) -> Option<Option<std::rc::Rc<Made>>> {
+    fn lens(&mut self, made: Fields, blocks: &Blocks) -> Option<Option<std::rc::Rc<Made>>> {
         match (made.given(camera::LENS), blocks.lens) {
             (Some((_, first)), Some(second)) => {
-                self.report(errors::second("lens", second.made.span, first));
+                self.report(errors::second("lens", second.made.span(), first));
                 None
             }
             (Some((lens, _)), None) => Some(Some(lens)),
             (None, Some(lens)) if !lens.made.is_sound() => None,
-            (None, lens) => Some(lens.map(|thing| thing.made.clone())),
+            (None, lens) => Some(lens.map(|thing| thing.made.keep())),
         }
     }
 
-    fn fov(&mut self, made: &Made, lens: Option<&Made>) -> Option<f64> {
+    fn fov(&mut self, made: Fields, lens: Option<Fields>) -> Option<f64> {
         let focal = lens.and_then(|lens| lens.given(lens::FOCAL));
         match (made.given(camera::FOV), focal) {
             (Some((_, fov)), Some((_, focal))) => {
@@ -160,7 +163,7 @@ impl Lowering<'_> {
     }
 
     /// The unit vectors to the right and up in the picture.
-    fn upright(&mut self, made: &Made, forward: DVec3) -> Option<(DVec3, DVec3)> {
+    fn upright(&mut self, made: Fields, forward: DVec3) -> Option<(DVec3, DVec3)> {
         let given = made.given(camera::UP);
         let up = self.things.read(made, camera::UP);
         let right = unit(up).and_then(|up| parallel_free(forward, up));
@@ -183,16 +186,16 @@ impl Lowering<'_> {
     }
 
     /// Radius of the lens, and the distance that is sharp.
-    fn opening(&mut self, lens: &Made, from: DVec3, forward: DVec3, look: DVec3) -> Option<(f64, f64)> {
+    fn opening(&mut self, lens: Fields, from: DVec3, forward: DVec3, look: DVec3) -> Option<(f64, f64)> {
         let focus = lens.given(lens::FOCUS);
         let distance = match focus {
             Some((Focus::Distance(distance), _)) => distance,
             Some((Focus::Aim(aim), span)) => (self.aim(aim, span)? - from).dot(forward),
             None => (look - from).dot(forward),
         };
-        self.out.marks.focus = Some(focus.as_ref().map_or(lens.span, |(_, span)| *span));
+        self.out.marks.focus = Some(focus.as_ref().map_or(lens.span(), |(_, span)| *span));
         if !(distance > 0.0 && distance.is_finite()) {
-            let span = focus.map_or(lens.span, |(_, span)| span);
+            let span = focus.map_or(lens.span(), |(_, span)| span);
             self.report(errors::focus_behind(span));
             return None;
         }

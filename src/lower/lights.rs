@@ -5,13 +5,13 @@ use super::*;
 impl Lowering<'_> {
     /// A lamp: a point, or a glowing sphere.
     pub(super) fn lamp(&mut self, index: usize, thing: &Thing) {
-        let made = &thing.made;
+        let made = thing.made;
         let power = self.things.read(made, light::COLOR) * self.things.read(made, light::POWER);
         let radius = self.things.read(made, light::RADIUS);
         let at = self.things.read(made, light::AT);
         let position = thing.world_from_object.transform_point3(at);
         if !position.is_finite() {
-            return self.report(self.used_at(thing, errors::not_finite_place(made.span)));
+            return self.report(self.used_at(thing, errors::not_finite_place(made.span())));
         }
         self.extents[index] = Extent::Lamp(Bounds { min: position, max: position });
         if made.given(light::AIM).is_some() {
@@ -23,14 +23,14 @@ impl Lowering<'_> {
             return self.add_light(thing, Light::Point { position, intensity });
         }
         let placement = thing.world_from_object * crate::math::DAffine3::from_translation(at);
-        match shape::ball(placement, radius, made.span) {
+        match shape::ball(placement, radius, made.span()) {
             Ok(shape) => {
                 if let Some(bounds) = shape.bounds() {
                     self.extents[index] = Extent::Lamp(bounds);
                 }
                 let radiance = power / (PI * shape.area());
                 if !radiance.is_finite() {
-                    return self.report(self.used_at(thing, errors::glows_beyond(made.span)));
+                    return self.report(self.used_at(thing, errors::glows_beyond(made.span())));
                 }
                 let material = self.materials.add(Material::Emitter { radiance, pattern: None });
                 self.add_surface(shape, material, None, thing.origin);
@@ -40,14 +40,14 @@ impl Lowering<'_> {
     }
 
     pub(super) fn sun(&mut self, thing: &Thing) {
-        let from = self.things.read(&thing.made, sun::FROM);
+        let from = self.things.read(thing.made, sun::FROM);
         let Some(direction) = shape::unit(thing.world_from_object.matrix3 * from) else {
-            let span = thing.made.given(sun::FROM).map_or(thing.made.span, |(_, span)| span);
+            let span = thing.made.given(sun::FROM).map_or(thing.made.span(), |(_, span)| span);
             return self.report(self.used_at(thing, errors::no_direction("from", span)));
         };
-        let color = self.things.read(&thing.made, sun::COLOR);
-        let irradiance = color * self.things.read(&thing.made, sun::IRRADIANCE);
-        let radius = 0.5 * self.things.read(&thing.made, sun::ANGLE);
+        let color = self.things.read(thing.made, sun::COLOR);
+        let irradiance = color * self.things.read(thing.made, sun::IRRADIANCE);
+        let radius = 0.5 * self.things.read(thing.made, sun::ANGLE);
         self.add_light(thing, Light::Sun { direction, irradiance, radius });
     }
 
@@ -62,7 +62,7 @@ impl Lowering<'_> {
                 self.lights.push(light);
                 self.out.marks.lights.push(Some(thing.origin));
             }
-            false => self.report(self.used_at(thing, errors::glows_beyond(thing.made.span))),
+            false => self.report(self.used_at(thing, errors::glows_beyond(thing.made.span()))),
         }
     }
 
@@ -77,7 +77,7 @@ impl Lowering<'_> {
         let Some(direction) = shape::unit(target - position) else {
             return self.report(self.used_at(thing, errors::aimed_at_itself(span)));
         };
-        let made = &thing.made;
+        let made = thing.made;
         let Some((cone, _)) = made.given(light::CONE) else { return };
         let outer = 0.5 * cone;
         let inner = (1.0 - self.things.read(made, light::SOFT)) * outer;

@@ -4,7 +4,7 @@ use super::errors;
 use super::texture::Textures;
 use crate::color::Rgb;
 use crate::diagnostic::Diagnostic;
-use crate::eval::{Given, Made, Paint as Written, Things, Value};
+use crate::eval::{Fields, Given, Made, Paint as Written, Things, Value};
 use crate::math::{DVec3, PI, ln};
 use crate::scene::{Material, MaterialId, Paint, Shape};
 use crate::schema::{self, Key, dielectric, diffuse, emitter, metal, mirror, plastic};
@@ -62,7 +62,7 @@ fn shared(given: Option<&Given>) -> Option<Option<*const Made>> {
     const OWN: usize = 2;
     match given.map(|given| &given.value) {
         None => Some(None),
-        Some(Value::Made(made)) if made.kind != emitter::KIND && Rc::strong_count(made) > OWN => {
+        Some(Value::Made(made)) if made.kind() != emitter::KIND && Rc::strong_count(made) > OWN => {
             Some(Some(Rc::as_ptr(made)))
         }
         Some(_) => None,
@@ -71,7 +71,7 @@ fn shared(given: Option<&Given>) -> Option<Option<*const Made>> {
 
 /// What a surface is made of that names no material.
 pub(super) fn bare(things: &Things) -> Material {
-    let color = match things.read(&super::plain(diffuse::KIND), diffuse::COLOR) {
+    let color = match things.read(super::plain(diffuse::KIND).fields(), diffuse::COLOR) {
         Written::Plain(color) => Paint::Plain(color),
         Written::Texture(_) => unreachable!("the default of a colour is one"),
     };
@@ -86,7 +86,8 @@ pub(super) fn lower(
     shape: &Shape,
 ) -> Result<Material, Box<Diagnostic>> {
     let Value::Made(made) = &given.value else { return Ok(bare(things)) };
-    let kind = made.kind;
+    let made = made.fields();
+    let kind = made.kind();
     let mut paint = |key: Key<schema::Paint>| textures.paint(&things.read(made, key), 1.0);
     Ok(if kind == diffuse::KIND {
         Material::Diffuse { color: paint(diffuse::COLOR)? }
@@ -118,7 +119,7 @@ pub(super) fn lower(
 fn glow(
     textures: &mut Textures,
     things: &Things,
-    made: &Made,
+    made: Fields,
     given: &Given,
     shape: &Shape,
 ) -> Result<Material, Box<Diagnostic>> {

@@ -51,17 +51,17 @@ impl<'f> Meshes<'f> {
 
     /// Lowers a mesh.
     pub(super) fn lower(&self, things: &Things, thing: &Thing) -> Result<Shape, Box<Diagnostic>> {
-        let made = &thing.made;
+        let made = thing.made;
         let file = things.read(made, mesh::FILE);
-        let span = made.given(mesh::FILE).map_or(made.span, |(_, span)| span);
+        let span = made.given(mesh::FILE).map_or(made.span(), |(_, span)| span);
         let triangles = self.file(&file, span)?;
         let unit = DVec3::splat(things.read(made, mesh::UNIT));
-        let placed = placed(thing.world_from_object * DAffine3::from_scale(unit), made.span)?;
+        let placed = placed(thing.world_from_object * DAffine3::from_scale(unit), made.span())?;
         let smooth = things.read(made, mesh::SMOOTH);
         let shape = Shape::Mesh(Box::new(Instance::new(triangles, placed, smooth)));
         match shape.bounds().is_some_and(|bounds| bounds.size().is_finite()) {
             true => Ok(shape),
-            false => Err(Box::new(errors::too_large(made.span))),
+            false => Err(Box::new(errors::too_large(made.span()))),
         }
     }
 

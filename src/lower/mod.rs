@@ -145,7 +145,7 @@ pub fn nothing_to_see(things: &Things, main: SourceId) -> Option<Diagnostic> {
 
 /// Where a thing is, for what asks before there is a scene.
 pub fn measure(things: &Things, thing: &Thing, meshes: &Meshes) -> Result<Reach, Box<Diagnostic>> {
-    let (made, kind) = (&thing.made, thing.made.kind);
+    let (made, kind) = (thing.made, thing.made.kind());
     let shape = if kind == schema::mesh::KIND {
         meshes.lower(things, thing)?
     } else if kind.get().category == Category::Shape {
@@ -157,7 +157,7 @@ pub fn measure(things: &Things, thing: &Thing, meshes: &Meshes) -> Result<Reach,
             let position = thing.world_from_object.transform_point3(at);
             return Ok(Reach::Box(Bounds { min: position, max: position }));
         }
-        shape::ball(thing.world_from_object * DAffine3::from_translation(at), radius, made.span)?
+        shape::ball(thing.world_from_object * DAffine3::from_translation(at), radius, made.span())?
     } else {
         return Ok(Reach::Nowhere);
     };
@@ -165,7 +165,7 @@ pub fn measure(things: &Things, thing: &Thing, meshes: &Meshes) -> Result<Reach,
 }
 
 /// The blocks that are not left out, each with its index among the things.
-fn written_blocks(things: &Things) -> Vec<(usize, Thing)> {
+fn written_blocks(things: &Things) -> Vec<(usize, Thing<'_>)> {
     let blocks = things.of(|kind| kind.get().category == Category::Block);
     blocks.filter(|(_, thing)| !thing.hidden).collect()
 }
@@ -174,7 +174,7 @@ struct Lowering<'a> {
     things: &'a Things,
     overrides: &'a Overrides,
     /// The blocks, each with its index among the things.
-    written: &'a [(usize, Thing)],
+    written: &'a [(usize, Thing<'a>)],
     primitives: Vec<Primitive>,
     materials: Materials,
     textures: Textures<'a>,
@@ -204,9 +204,9 @@ enum Extent {
 /// The blocks that say how the picture is taken.
 #[derive(Default)]
 struct Blocks<'a> {
-    camera: Option<&'a Thing>,
-    lens: Option<&'a Thing>,
-    render: Option<&'a Thing>,
+    camera: Option<&'a Thing<'a>>,
+    lens: Option<&'a Thing<'a>>,
+    render: Option<&'a Thing<'a>>,
 }
 
 impl<'a> Lowering<'a> {
@@ -224,13 +224,13 @@ impl<'a> Lowering<'a> {
             }
             let sound =
                 thing.made.is_sound() && thing.material.as_ref().is_none_or(|given| given.value.is_sound());
-            let kind = thing.made.kind;
+            let kind = thing.made.kind();
             if kind == schema::sky::KIND {
                 if let Some(first) = sky_place {
-                    self.report(errors::second("sky", thing.made.span, first));
+                    self.report(errors::second("sky", thing.made.span(), first));
                     continue;
                 }
-                sky_place = Some(thing.made.span);
+                sky_place = Some(thing.made.span());
             }
             if !sound {
                 continue;
@@ -263,7 +263,7 @@ impl<'a> Lowering<'a> {
     }
 
     fn surface(&mut self, index: usize, thing: &Thing) {
-        let lowered = match thing.made.kind {
+        let lowered = match thing.made.kind() {
             schema::mesh::KIND => self.meshes.lower(self.things, thing),
             _ => shape::lower(self.things, thing),
         };
@@ -280,7 +280,7 @@ impl<'a> Lowering<'a> {
         let mut frame = None;
         if self.materials.get(material).texture().is_some() {
             let world_from_grain = thing.world_from_grain.unwrap_or(thing.world_from_object);
-            match shape::placed(world_from_grain, thing.made.span) {
+            match shape::placed(world_from_grain, thing.made.span()) {
                 Ok(placed) => self.frames.push(placed),
                 Err(diagnostic) => return self.report(self.used_at(thing, *diagnostic)),
             }
@@ -312,7 +312,7 @@ impl<'a> Lowering<'a> {
     /// Finds the one camera, lens and render block.
     fn blocks(&mut self) -> Blocks<'a> {
         let all = self.written;
-        let of = |kind| all.iter().map(|(_, thing)| thing).filter(move |thing| thing.made.kind == kind);
+        let of = |kind| all.iter().map(|(_, thing)| thing).filter(move |thing| thing.made.kind() == kind);
         let mut blocks = Blocks::default();
         for (kind, place) in
             [(render::KIND, &mut blocks.render), (crate::schema::lens::KIND, &mut blocks.lens)]
@@ -320,7 +320,8 @@ impl<'a> Lowering<'a> {
             for thing in of(kind) {
                 match place {
                     Some(first) => {
-                        let diagnostic = errors::second(kind.get().name, thing.made.span, first.made.span);
+                        let diagnostic =
+                            errors::second(kind.get().name, thing.made.span(), first.made.span());
                         self.out.diagnostics.push(diagnostic);
                     }
                     None => *place = Some(thing),
@@ -329,23 +330,27 @@ impl<'a> Lowering<'a> {
         }
         let cameras: Vec<(usize, &Thing)> = all
             .iter()
-            .filter(|(_, thing)| thing.made.kind == crate::schema::camera::KIND)
+            .filter(|(_, thing)| thing.made.kind() == crate::schema::camera::KIND)
             .map(|(index, thing)| (*index, thing))
             .collect();
         blocks.camera = self.choose_camera(&cameras, blocks.render);
         if let (Some(lens), [first, _, ..]) = (blocks.lens, &cameras[..]) {
-            self.report(errors::lens_of_which(lens.made.span, first.1.made.span));
+            self.report(errors::lens_of_which(lens.made.span(), first.1.made.span()));
         }
         blocks
     }
 
-    fn choose_camera(&mut self, cameras: &[(usize, &'a Thing)], render: Option<&Thing>) -> Option<&'a Thing> {
+    fn choose_camera(
+        &mut self,
+        cameras: &[(usize, &'a Thing<'a>)],
+        render: Option<&Thing>,
+    ) -> Option<&'a Thing<'a>> {
         let names: Vec<&str> =
             cameras.iter().filter_map(|(_, camera)| camera.name()).map(|name| name.as_str()).collect();
         if let Some(wanted) = &self.overrides.camera {
             let found = cameras.iter().find(|(_, camera)| camera.name().is_some_and(|name| name == wanted));
             if found.is_none() && !self.things.incomplete {
-                let place = cameras.first().map(|(_, camera)| camera.made.span);
+                let place = cameras.first().map(|(_, camera)| camera.made.span());
                 self.report(errors::no_such_camera(wanted, &names, place));
             }
             return found.map(|(_, camera)| *camera);
@@ -359,7 +364,7 @@ impl<'a> Lowering<'a> {
         if let [_, (_, second), ..] = cameras
             && !unknown
         {
-            self.report(errors::which_camera(second.made.span, cameras[0].1.made.span, &names));
+            self.report(errors::which_camera(second.made.span(), cameras[0].1.made.span(), &names));
         }
         cameras.first().map(|(_, camera)| *camera)
     }
@@ -386,7 +391,8 @@ impl<'a> Lowering<'a> {
     }
 
     fn trace(&mut self, blocks: &Blocks, size: [u32; 2]) -> (Trace, Tonemap) {
-        let made = blocks.render.map(|thing| thing.made.clone()).unwrap_or_else(|| plain(render::KIND));
+        let plain = plain(render::KIND);
+        let made = blocks.render.map_or(plain.fields(), |thing| thing.made);
         let samples = made.given(render::SAMPLES).map(|(samples, _)| samples as u32);
         let noise = made.given(render::NOISE);
         self.out.places.noise = noise.map(|(_, span)| span);
@@ -404,13 +410,13 @@ impl<'a> Lowering<'a> {
         let trace = Trace {
             size,
             target,
-            bounces: self.things.read(&made, render::BOUNCES) as u32,
-            indirect: self.things.read(&made, render::INDIRECT),
-            seed: self.overrides.seed.unwrap_or(self.things.read(&made, render::SEED) as u64),
-            filter: self.things.read(&made, render::FILTER),
-            background: self.things.read(&made, render::BACKGROUND),
+            bounces: self.things.read(made, render::BOUNCES) as u32,
+            indirect: self.things.read(made, render::INDIRECT),
+            seed: self.overrides.seed.unwrap_or(self.things.read(made, render::SEED) as u64),
+            filter: self.things.read(made, render::FILTER),
+            background: self.things.read(made, render::BACKGROUND),
         };
-        let tonemap = self.overrides.tonemap.unwrap_or_else(|| self.things.read(&made, render::TONEMAP));
+        let tonemap = self.overrides.tonemap.unwrap_or_else(|| self.things.read(made, render::TONEMAP));
         (trace, tonemap)
     }
 
@@ -424,11 +430,10 @@ impl<'a> Lowering<'a> {
         }
         let glows = self.materials.all().any(|material| matches!(material, Material::Emitter { .. }));
         if self.lights.is_empty() && !glows {
-            let lights = self
-                .things
-                .iter()
-                .filter(|thing| !thing.hidden)
-                .any(|thing| thing.made.kind.get().category == Category::Light || !thing.made.is_sound());
+            let lights =
+                self.things.iter().filter(|thing| !thing.hidden).any(|thing| {
+                    thing.made.kind().get().category == Category::Light || !thing.made.is_sound()
+                });
             if !lights {
                 self.lights.push(Light::Sky { radiance: Rgb::ONE, panorama: None });
                 self.out.marks.lights.push(None);
@@ -447,13 +452,13 @@ impl<'a> Lowering<'a> {
 }
 
 /// A thing of a kind as if it had been written with nothing in it.
-fn plain(kind: crate::schema::KindId) -> std::rc::Rc<crate::eval::Made> {
+fn plain(kind: crate::schema::KindId) -> crate::eval::Made {
     let nowhere = crate::span::Span::new(crate::span::SourceId(0), 0, 0);
-    std::rc::Rc::new(crate::eval::Made::new(kind, nowhere))
+    crate::eval::Made::new(kind, nowhere)
 }
 
 fn default_size(things: &Things) -> [u32; 2] {
-    things.read(&plain(render::KIND), render::SIZE)
+    things.read(plain(render::KIND).fields(), render::SIZE)
 }
 
 #[cfg(test)]

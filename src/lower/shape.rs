@@ -15,46 +15,46 @@ const SIMILAR: f64 = 1e-12;
 
 /// Lowers a shape.
 pub(super) fn lower(things: &Things, thing: &Thing) -> Result<Shape, Box<Diagnostic>> {
-    let made = &thing.made;
+    let made = thing.made;
     let placement = thing.world_from_object;
     if !placement.is_finite() {
-        return Err(Box::new(errors::not_finite_place(made.span)));
+        return Err(Box::new(errors::not_finite_place(made.span())));
     }
-    if made.kind == sphere::KIND {
-        ball(placement, things.read(made, sphere::RADIUS), made.span)
-    } else if made.kind == hyperboloid::KIND {
+    if made.kind() == sphere::KIND {
+        ball(placement, things.read(made, sphere::RADIUS), made.span())
+    } else if made.kind() == hyperboloid::KIND {
         hyperboloid(things, thing)
-    } else if made.kind == paraboloid::KIND {
+    } else if made.kind() == paraboloid::KIND {
         let [radius, height] = [paraboloid::RADIUS, paraboloid::HEIGHT].map(|key| things.read(made, key));
         let axes = DVec3::new(radius, height, radius);
         let capped = !things.read(made, paraboloid::OPEN);
-        quadric(Form::Paraboloid, placement, axes, [f64::NEG_INFINITY, 1.0], capped, made.span)
-    } else if made.kind == cone::KIND {
+        quadric(Form::Paraboloid, placement, axes, [f64::NEG_INFINITY, 1.0], capped, made.span())
+    } else if made.kind() == cone::KIND {
         cone(things, thing)
-    } else if made.kind == cylinder::KIND {
+    } else if made.kind() == cylinder::KIND {
         let [radius, height] = [cylinder::RADIUS, cylinder::HEIGHT].map(|key| things.read(made, key));
         let axes = DVec3::new(radius, height, radius);
         let capped = !things.read(made, cylinder::OPEN);
-        quadric(Form::Cylinder, placement, axes, [0.0, 1.0], capped, made.span)
-    } else if made.kind == disk::KIND {
+        quadric(Form::Cylinder, placement, axes, [0.0, 1.0], capped, made.span())
+    } else if made.kind() == disk::KIND {
         let normal = things.read(made, disk::NORMAL);
-        let span = made.given(disk::NORMAL).map_or(made.span, |(_, span)| span);
+        let span = made.given(disk::NORMAL).map_or(made.span(), |(_, span)| span);
         let Some(normal) = unit(normal) else { return Err(Box::new(errors::no_direction("normal", span))) };
         let (z, x) = basis(normal);
         let turned = DMat3::from_cols(x, normal, z) * things.read(made, disk::RADIUS);
-        let placed = placed(placement * DAffine3::from_mat3(turned), made.span)?;
+        let placed = placed(placement * DAffine3::from_mat3(turned), made.span())?;
         Ok(Shape::Disk(Box::new(placed)))
-    } else if made.kind == cuboid::KIND {
+    } else if made.kind() == cuboid::KIND {
         let half = 0.5 * things.read(made, cuboid::SIZE);
-        let placed = placed(placement * DAffine3::from_scale(half), made.span)?;
+        let placed = placed(placement * DAffine3::from_scale(half), made.span())?;
         Ok(Shape::Box(Box::new(placed)))
     } else {
         let normal = things.read(made, plane::NORMAL);
-        let span = made.given(plane::NORMAL).map_or(made.span, |(_, span)| span);
+        let span = made.given(plane::NORMAL).map_or(made.span(), |(_, span)| span);
         let Some(normal) = unit(normal) else { return Err(Box::new(errors::no_direction("normal", span))) };
-        let inverse = invert(placement).ok_or_else(|| Box::new(errors::flattened(made.span)))?;
+        let inverse = invert(placement).ok_or_else(|| Box::new(errors::flattened(made.span())))?;
         let normal = unit(inverse.matrix3.transpose() * normal);
-        let normal = normal.ok_or_else(|| Box::new(errors::flattened(made.span)))?;
+        let normal = normal.ok_or_else(|| Box::new(errors::flattened(made.span())))?;
         Ok(Shape::Plane { point: placement.translation, normal })
     }
 }
@@ -81,7 +81,7 @@ pub(super) fn ball(placement: DAffine3, radius: f64, span: Span) -> Result<Shape
 }
 
 fn hyperboloid(things: &Things, thing: &Thing) -> Result<Shape, Box<Diagnostic>> {
-    let made = &thing.made;
+    let made = thing.made;
     let axes = things.read(made, hyperboloid::AXES);
     let form = if things.read(made, hyperboloid::SHEETS) == 1.0 { Form::OneSheet } else { Form::TwoSheet };
     let height = made.given(hyperboloid::HEIGHT);
@@ -94,7 +94,7 @@ fn hyperboloid(things: &Things, thing: &Thing) -> Result<Shape, Box<Diagnostic>>
     {
         return Err(Box::new(errors::height_between_sheets(2.0 * axes.y, span)));
     }
-    quadric(form, thing.world_from_object, axes, [-end, end], capped, made.span)
+    quadric(form, thing.world_from_object, axes, [-end, end], capped, made.span())
 }
 
 /// A cone, cut off or not. The apex is at the origin of object space, where the radius is 1 at y = −1.
@@ -102,20 +102,20 @@ fn cone(things: &Things, thing: &Thing) -> Result<Shape, Box<Diagnostic>> {
     /// Radii that differ by no more than this share of them make a cylinder: a billionth is not to be seen, and the
     /// apex would be so far off that places near the cone had few digits left.
     const ALIKE: f64 = 1e-9;
-    let made = &thing.made;
+    let made = thing.made;
     let [radius, height, top] = [cone::RADIUS, cone::HEIGHT, cone::TOP].map(|key| things.read(made, key));
     let capped = !things.read(made, cone::OPEN);
     let placement = thing.world_from_object;
     if (radius - top).abs() <= ALIKE * radius {
         let axes = DVec3::new(radius, height, radius);
-        return quadric(Form::Cylinder, placement, axes, [0.0, 1.0], capped, made.span);
+        return quadric(Form::Cylinder, placement, axes, [0.0, 1.0], capped, made.span());
     }
     let apex = height / (1.0 - top / radius);
     let raised = placement * DAffine3::from_translation(apex * DVec3::Y);
     let axes = DVec3::new(radius, apex.abs(), radius);
     // A cone that widens upwards has its apex below.
     let ends = if top < radius { [-1.0, -top / radius] } else { [1.0, top / radius] };
-    quadric(Form::Cone, raised, axes, ends, capped, made.span)
+    quadric(Form::Cone, raised, axes, ends, capped, made.span())
 }
 
 fn quadric(

@@ -14,7 +14,7 @@ const STRETCH: f64 = 1e-9;
 
 impl Lowering<'_> {
     pub(super) fn sky(&mut self, thing: &Thing) {
-        let made = &thing.made;
+        let made = thing.made;
         let radiance = self.things.read(made, sky::COLOR) * self.things.read(made, sky::RADIANCE);
         let panorama = match made.given(sky::IMAGE) {
             None => None,
@@ -29,9 +29,9 @@ impl Lowering<'_> {
     /// The picture of a sky. It turns with the groups that it stands in.
     fn panorama(&mut self, thing: &Thing, file: &str, span: Span) -> Result<Panorama, Box<Diagnostic>> {
         let image = self.textures.image(file, span)?;
-        let turn = turn_y(self.things.read(&thing.made, sky::TURN));
+        let turn = turn_y(self.things.read(thing.made, sky::TURN));
         let turned = rotation(thing.world_from_object.matrix3 * turn);
-        let world_from_image = turned.ok_or_else(|| Box::new(errors::stretched_sky(thing.made.span)))?;
+        let world_from_image = turned.ok_or_else(|| Box::new(errors::stretched_sky(thing.made.span())))?;
         Ok(Panorama { image, image_from_world: world_from_image.transpose() })
     }
 }

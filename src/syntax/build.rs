@@ -5,7 +5,7 @@ use super::ast::{
     StatementKind,
 };
 use super::cut::Item;
-use super::errors::{self, Sink, statements};
+use super::errors::{self, Held, Sink, statements};
 use super::slips::{ends_invalid, spoil};
 use super::{docs, statement, value};
 use crate::span::{SourceId, Span};
@@ -77,7 +77,7 @@ impl<'t> Builder<'t> {
             text: &item.text,
             base: item.start,
             continued: item.continued,
-            sink: RefCell::new(Sink::new()),
+            sink: RefCell::new(Sink::default()),
             deep: Cell::new(false),
             foreign: Cell::new(None),
             unbraced: Cell::new(false),
@@ -89,8 +89,8 @@ impl<'t> Builder<'t> {
     }
 
     /// How much was reported.
-    pub(super) fn reported(&self) -> usize {
-        self.sink.borrow().len()
+    pub(super) fn reported(&self) -> Held {
+        self.sink.borrow().held()
     }
 
     // --- Places ---------------------------------------------------------------------------------------------
@@ -214,7 +214,7 @@ impl<'t> Builder<'t> {
         for pair in pairs {
             match pair.as_rule() {
                 Rule::semicolon => self.semicolon(&pair),
-                Rule::crowded if explained => muted = Some(self.sink.borrow().len()),
+                Rule::crowded if explained => muted = Some(self.reported()),
                 Rule::crowded => self.crowded(&pair),
                 Rule::extra | Rule::decimal if explained || explained_value || self.unbraced.get() => {}
                 Rule::decimal => {
@@ -229,7 +229,7 @@ impl<'t> Builder<'t> {
                 Rule::stray => self.stray(&pair),
                 Rule::EOI => {}
                 _ => {
-                    let known = self.sink.borrow().len();
+                    let known = self.reported();
                     let start = pair.as_span().end() - pair.as_str().trim_ascii_start().len();
                     let end = pair.as_span().start() + pair.as_str().trim_ascii_end().len();
                     if !top && is_angled(&pair) {
@@ -238,8 +238,8 @@ impl<'t> Builder<'t> {
                     let (entry, depth) = self.entry(pair, top);
                     let nameless = matches!(entry, Entry::Broken(Broken { name: None, .. }));
                     let again = lost.is_some_and(|lost| !self.text[lost..start].contains('\n'));
-                    if let Some(length) = muted.take().or((nameless && again).then_some(known)) {
-                        self.sink.borrow_mut().truncate(length);
+                    if let Some(held) = muted.take().or((nameless && again).then_some(known)) {
+                        self.sink.borrow_mut().truncate(held);
                     }
                     lost = nameless.then_some(end);
                     explained = matches!(entry, Entry::Broken(_));
@@ -344,7 +344,7 @@ impl<'t> Builder<'t> {
     /// `kind { … }`, without a limit on its depth. The kind is given by its names. None where the body is written as
     /// in another language: that is one slip, whatever else it makes wrong.
     pub(super) fn construct(&self, mut kind: Vec<Name>, body: Node<'t>) -> Deep<Option<Construct>> {
-        let (known, around) = (self.sink.borrow().len(), self.foreign.take());
+        let (known, around) = (self.reported(), self.foreign.take());
         let (body, depth) = self.body(body);
         if let Some(angled) = self.foreign.replace(around) {
             self.sink.borrow_mut().truncate(known);

@@ -178,7 +178,7 @@ struct Cutter<'t> {
     layout: bool,
     rescans: usize,
     /// How many diagnostics and comments there were before the item.
-    before_item: (usize, usize),
+    before_item: (errors::Held, usize),
     ended_in_comment: bool,
     /// Where comments begin as in other languages.
     foreign_comments: Vec<Span>,
@@ -197,7 +197,7 @@ impl<'t> Cutter<'t> {
             bytes: text.as_bytes(),
             splits,
             most,
-            out: Cut { items: vec![], comments: vec![], sink: Sink::new(), strays: vec![] },
+            out: Cut { items: vec![], comments: vec![], sink: Sink::default(), strays: vec![] },
             at: after_marks(text),
             indent: 0,
             last: Last::Open,
@@ -214,7 +214,7 @@ impl<'t> Cutter<'t> {
             beyond: 0,
             layout: false,
             rescans: 0,
-            before_item: (0, 0),
+            before_item: Default::default(),
             ended_in_comment: false,
             foreign_comments: vec![],
         }

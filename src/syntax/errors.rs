@@ -15,51 +15,72 @@ use crate::span::Span;
 /// Beyond so many nobody reads on, and a hostile file must not exhaust the memory.
 const MAX_DIAGNOSTICS: usize = 1000;
 
+/// So many `;` are mended at once.
+const MAX_SEMICOLONS: usize = 10_000;
+
 /// Collects diagnostics up to a limit.
-#[derive(Debug)]
-pub(super) struct Sink(Vec<Diagnostic>);
+#[derive(Debug, Default)]
+pub(super) struct Sink {
+    told: Vec<Diagnostic>,
+    /// Each `;` that does not belong, with what should stand there: all of them are one habit, and one error.
+    semicolons: Vec<(Span, &'static str)>,
+}
+
+/// How much a sink holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Held {
+    told: usize,
+    semicolons: usize,
+}
 
 impl Sink {
-    pub(super) fn new() -> Sink {
-        Sink(vec![])
+    pub(super) fn push(&mut self, diagnostic: Diagnostic) {
+        if self.told.len() < MAX_DIAGNOSTICS {
+            self.told.push(diagnostic);
+        }
     }
 
-    pub(super) fn push(&mut self, diagnostic: Diagnostic) {
-        if self.0.len() < MAX_DIAGNOSTICS {
-            self.0.push(diagnostic);
+    /// Adds a `;` in place of which something else should stand, or nothing.
+    pub(super) fn push_semicolon(&mut self, place: Span, replacement: &'static str) {
+        if self.semicolons.len() < MAX_SEMICOLONS {
+            self.semicolons.push((place, replacement));
         }
     }
 
     pub(super) fn append(&mut self, other: Sink) {
-        other.0.into_iter().for_each(|diagnostic| self.push(diagnostic));
+        other.told.into_iter().for_each(|diagnostic| self.push(diagnostic));
+        other.semicolons.into_iter().for_each(|(place, replacement)| self.push_semicolon(place, replacement));
     }
 
-    pub(super) fn len(&self) -> usize {
-        self.0.len()
+    pub(super) fn is_empty(&self) -> bool {
+        self.held() == Held::default()
     }
 
-    pub(super) fn truncate(&mut self, length: usize) {
-        self.0.truncate(length);
+    pub(super) fn held(&self) -> Held {
+        Held { told: self.told.len(), semicolons: self.semicolons.len() }
+    }
+
+    /// Forgets what came later.
+    pub(super) fn truncate(&mut self, held: Held) {
+        self.told.truncate(held.told);
+        self.semicolons.truncate(held.semicolons);
     }
 
     /// Adds a label to the one diagnostic that points into a place, if there is one.
     pub(super) fn label(&mut self, within: Span, place: Span, text: &str) -> bool {
-        let found = self.0.iter_mut().find(|diagnostic| within.contains(diagnostic.primary.span));
+        let found = self.told.iter_mut().find(|diagnostic| within.contains(diagnostic.primary.span));
         let Some(diagnostic) = found else { return false };
         *diagnostic =
             std::mem::replace(diagnostic, Diagnostic::new(Code::E0001, "", place)).label(place, text);
         true
     }
 
-    /// Moves all that the diagnostics point at.
-    pub(super) fn move_places(&mut self, moved: impl Fn(Span) -> Span) {
-        self.0.iter_mut().for_each(|diagnostic| diagnostic.move_places(&moved));
-    }
-
-    /// What was collected, in the order of the text.
-    pub(super) fn into_sorted(mut self) -> Vec<Diagnostic> {
-        self.0.sort_by_key(|diagnostic| (diagnostic.primary.span.start, diagnostic.code));
-        self.0
+    /// What was collected, in the order of the text, with each place where it was written.
+    pub(super) fn into_sorted(mut self, written: impl Fn(Span) -> Span) -> Vec<Diagnostic> {
+        self.told.extend(semicolons(&self.semicolons));
+        self.told.iter_mut().for_each(|diagnostic| diagnostic.move_places(&written));
+        self.told.sort_by_key(|diagnostic| (diagnostic.primary.span.start, diagnostic.code));
+        self.told
     }
 }
 
@@ -375,16 +396,25 @@ pub(super) fn type_in_definition(keyword: &str, name: &str, ty: Span, edit: Span
         .fix(edit, "")
 }
 
-/// `radius: 5cm;`
-pub(super) fn semicolon(span: Span, replacement: &str) -> Diagnostic {
-    let help = match replacement {
-        "" => "delete it",
-        _ => "write a comma",
+/// `radius: 5cm;`: each `;` of a text, and what should stand there.
+fn semicolons(places: &[(Span, &'static str)]) -> Option<Diagnostic> {
+    let first = places.iter().map(|(place, _)| *place).min()?;
+    let commas = places.iter().filter(|(_, replacement)| *replacement == ",").count();
+    let help = match (places.len() - commas, commas) {
+        (_, 0) => "delete it: the end of a line is enough",
+        (0, _) => "write a comma",
+        _ => "delete it at the end of a line, and write a comma within one",
     };
-    Diagnostic::new(Code::E0003, "`;` does not separate", span)
-        .at("not a separator")
-        .help(help)
-        .fix(span, replacement)
+    let label = match places.len() - 1 {
+        0 => "not a separator".to_string(),
+        n => format!("not a separator, here and in {n} more {}", if n == 1 { "place" } else { "places" }),
+    };
+    let diagnostic = Diagnostic::new(Code::E0003, "`;` does not separate", first).at(label).help(help);
+    Some(
+        places
+            .iter()
+            .fold(diagnostic, |diagnostic, (place, replacement)| diagnostic.fix(*place, *replacement)),
+    )
 }
 
 // --- E0004 to E0007 ---------------------------------------------------------------------------------------

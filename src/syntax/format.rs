@@ -59,7 +59,7 @@ fn broken(file: &File, text: &str, slips: &[Diagnostic]) -> Vec<Range<usize>> {
     if slips.is_empty() {
         return vec![];
     }
-    let written = lookalikes::read(file.source, text, &mut Sink::new());
+    let written = lookalikes::read(file.source, text, &mut Sink::default());
     let items: Vec<Range<usize>> = cut::cut(file.source, &written.text, Limits::default().depth)
         .items
         .iter()

@@ -14,7 +14,7 @@ use std::borrow::Cow;
 /// The entries of items.
 pub(super) fn items(source: Source, items: &[Item]) -> (Vec<Entry>, Sink) {
     let mut entries = Vec::with_capacity(items.len());
-    let mut sink = Sink::new();
+    let mut sink = Sink::default();
     let mut shapes = Shapes::default();
     let mut rows = Rows::default();
     for item in items {
@@ -34,7 +34,7 @@ pub(super) fn items(source: Source, items: &[Item]) -> (Vec<Entry>, Sink) {
         }
         close(&mut rows, &mut entries);
         let (built, slips) = on_enough_stack(source, item, || entries_of(source, item));
-        if plain && slips.len() == 0 {
+        if plain && slips.is_empty() {
             shapes.learn(&built, start);
         }
         entries.extend(built);
@@ -64,7 +64,7 @@ pub(super) fn value(source: Source, item: Option<&Item>) -> (Expr, Sink) {
     match item {
         Some(item) => on_enough_stack(source, item, || value_of(source, item)),
         None => {
-            let mut sink = Sink::new();
+            let mut sink = Sink::default();
             let span = Span::new(source.id, 0, source.text.len());
             sink.push(errors::missing_value("", span));
             (Expr { kind: ExprKind::Invalid, span }, sink)

@@ -77,7 +77,7 @@ pub fn parse_rows(source: SourceId, text: &str, limits: Limits) -> (ast::File, V
         let file = ast::File { source, body, comments: vec![] };
         return (file, vec![errors::long_source(span.after(), limits.source)]);
     }
-    let mut sink = errors::Sink::new();
+    let mut sink = errors::Sink::default();
     let read = lookalikes::read(source, text, &mut sink);
     let mut cut = cut::cut(source, &read.text, limits.depth);
     read.skip(&mut cut);
@@ -95,9 +95,8 @@ pub fn parse_rows(source: SourceId, text: &str, limits: Limits) -> (ast::File, V
         built.into_iter().for_each(collect);
     }
     strays(&entries, &cut.strays, &mut sink);
-    sink.move_places(|place| read.whole(place, text));
     let file = ast::File { source, body: ast::Body { entries, span }, comments: cut.comments };
-    (file, sink.into_sorted())
+    (file, sink.into_sorted(|place| read.whole(place, text)))
 }
 
 /// Reports closers without an opener. Behind a thing whose `{` is missing, that is the slip.
@@ -121,7 +120,7 @@ fn strays(entries: &[ast::Entry], strays: &[cut::Stray], sink: &mut errors::Sink
 /// Reads a text that is one expression, such as a default value or a setting from the command line.
 pub fn parse_expression(source: SourceId, text: &str) -> (ast::Expr, Vec<Diagnostic>) {
     let Limits { source: longest, depth } = Limits::default();
-    let mut sink = errors::Sink::new();
+    let mut sink = errors::Sink::default();
     let text = &text[..text.floor_char_boundary(longest)];
     let read = lookalikes::read(source, text, &mut sink);
     let mut cut = cut::whole(source, &read.text, depth);
@@ -130,6 +129,5 @@ pub fn parse_expression(source: SourceId, text: &str) -> (ast::Expr, Vec<Diagnos
     let found = build::Source { id: source, text, comments: &cut.comments, depth };
     let (expr, slips) = items::value(found, cut.items.first());
     sink.append(slips);
-    sink.move_places(|place| read.whole(place, text));
-    (expr, sink.into_sorted())
+    (expr, sink.into_sorted(|place| read.whole(place, text)))
 }

@@ -216,7 +216,7 @@ impl<'t> Builder<'t> {
         let rest = self.after(pair.as_span().end()).trim_start_matches([' ', '\t', '\r']);
         let ends = if rest.is_empty() { !self.continued() } else { rest.starts_with(['\n', '}', ',', ')']) };
         let replacement = if ends { "" } else { "," };
-        self.report(errors::semicolon(self.span(pair), replacement));
+        self.sink.borrow_mut().push_semicolon(self.span(pair), replacement);
     }
 
     pub(super) fn crowded(&self, pair: &Node) {
@@ -231,7 +231,7 @@ impl<'t> Builder<'t> {
     pub(super) fn stray(&self, pair: &Node) {
         let span = self.span(pair);
         match pair.as_str() {
-            ";" => self.report(errors::semicolon(span, "")),
+            ";" => self.sink.borrow_mut().push_semicolon(span, ""),
             sign => self.report(errors::stray_separator(span, sign)),
         }
     }

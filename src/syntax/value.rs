@@ -315,6 +315,13 @@ fn elements(builder: &Builder, pair: Node) -> Elements {
                     last.value.kind = ExprKind::Invalid;
                 }
             }
+            Rule::of_each => {
+                let start = builder.span(&pair);
+                let word = Span { end: start.start + "for".len() as u32, ..start };
+                builder.report(errors::of_each(word));
+                let value = Expr { kind: ExprKind::Invalid, span: start };
+                found.arguments = vec![Argument { name: None, value }];
+            }
             Rule::semicolon => builder.semicolon(&pair),
             _ => {
                 let close = builder.span(&pair);

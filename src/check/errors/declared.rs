@@ -1,7 +1,7 @@
 //! What can be wrong with params, parts, imports, functions and prefixes.
 
 use super::{closest, quoted};
-use crate::check::declared::TYPES;
+use crate::check::declared::{Declared, TYPES};
 use crate::check::types::Type;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::span::Span;
@@ -102,15 +102,22 @@ pub(in crate::check) fn allow_what(name: &Name) -> Diagnostic {
     }
 }
 
-/// A `--set` that names no param of the file.
-pub(in crate::check) fn no_such_param(name: &Name, params: &[&str]) -> Diagnostic {
+/// A `--set` that names no param of the file. `ty` is what its value would be declared as, if that is known.
+pub(in crate::check) fn no_such_param(
+    name: &Name,
+    params: &[&str],
+    ty: Option<&Declared>,
+    value: &str,
+) -> Diagnostic {
     let diagnostic =
         Diagnostic::new(Code::E0503, format!("the scene has no param `{}`", name.text), name.span)
             .at("not declared");
     match closest(&name.text, params) {
         Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")),
         None if params.is_empty() => {
-            diagnostic.help(format!("declare it in the scene: `param {}: number = 1`", name.text))
+            let ty = ty.map_or("type".into(), Declared::written);
+            let value = if value.len() > 40 { "…" } else { value.trim() };
+            diagnostic.help(format!("declare it in the scene: `param {}: {ty} = {value}`", name.text))
         }
         None => diagnostic.help(format!("its params are {}", quoted(params))),
     }

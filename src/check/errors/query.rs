@@ -26,20 +26,33 @@ pub(in crate::check) fn not_a_list(span: Span, ty: &Type) -> Diagnostic {
 
 pub(in crate::check) fn mixed_list([a, b]: [(Span, &Type); 2]) -> Diagnostic {
     let (first, other) = (a.1.describe(), b.1.describe());
-    Diagnostic::new(Code::E0201, format!("a list holds one type, these are {first} and {other}"), b.0)
-        .at(other)
-        .label(a.0, first)
+    let diagnostic =
+        Diagnostic::new(Code::E0201, format!("a list holds one type, these are {first} and {other}"), b.0)
+            .at(other)
+            .label(a.0, first);
+    with_prototype(diagnostic, [a.1, b.1])
+}
+
+/// Says what makes a thing of the scene and a prototype differ, where these are the two.
+fn with_prototype(diagnostic: Diagnostic, types: [&Type; 2]) -> Diagnostic {
+    match types {
+        [Type::Thing(_), Type::Made(_)] | [Type::Made(_), Type::Thing(_)] => diagnostic.help(
+            "one is in the picture already, the other is what things are made from: name both by `let`, as prototypes",
+        ),
+        _ => diagnostic,
+    }
 }
 
 pub(in crate::check) fn branches([a, b]: [(Span, &Type); 2]) -> Diagnostic {
     let (first, other) = (a.1.describe(), b.1.describe());
-    Diagnostic::new(
+    let diagnostic = Diagnostic::new(
         Code::E0201,
         format!("both values of an `if` are of one type, these are {first} and {other}"),
         b.0,
     )
     .at(other)
-    .label(a.0, first)
+    .label(a.0, first);
+    with_prototype(diagnostic, [a.1, b.1])
 }
 
 pub(in crate::check) fn to_of_what(span: Span, ty: &Type) -> Diagnostic {

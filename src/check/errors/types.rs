@@ -34,6 +34,9 @@ pub(in crate::check) fn mismatch(
             FieldType::Named(kind) => {
                 diagnostic.help(format!("name one that stands by itself: `{kind} NAME {{ … }}`"))
             }
+            _ if matches!(ty, Type::Made(_)) => diagnostic.help(
+                "a prototype is not in the picture, and stands nowhere; name a thing that is: `sphere ball { … }`",
+            ),
             _ => diagnostic.help("name a thing that stands in the picture: `sphere ball { … }`"),
         },
         _ => match (field, ty) {
@@ -55,6 +58,12 @@ pub(in crate::check) fn mismatch(
             (FieldType::Made(_) | FieldType::Target | FieldType::Named(_), Type::Text) => {
                 diagnostic.help(format!("a name has no quotes: `{}`", text.trim_matches('"')))
             }
+            (FieldType::OneOf(types), Type::Text) if types.contains(&FieldType::Target) => {
+                let place = suggested_unit(field).map_or(String::new(), |unit| sample(field, &unit));
+                diagnostic.help(format!(
+                    "such as `{place}`, or the name of a thing, which has no quotes"
+                ))
+            }
             (FieldType::Made(_), _) => diagnostic.help("such as `diffuse { color: #d94f30 }`"),
             (FieldType::Transform, _) => {
                 diagnostic.help("such as `scale(2) |> turn(z: 10deg) |> move(0, 1m, 0)`")
@@ -65,6 +74,11 @@ pub(in crate::check) fn mismatch(
             },
         },
     }
+}
+
+/// The name of what is wanted stands in quotes.
+pub(in crate::check) fn name_in_quotes(diagnostic: Diagnostic, name: &Name) -> Diagnostic {
+    diagnostic.help(format!("a name has no quotes: `{}`", name.text)).fix(name.span, name.text.as_str())
 }
 
 /// Whether a quoted text is the code of a colour.
@@ -256,6 +270,18 @@ pub(in crate::check) fn turn_axis(span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0201, "`turn` turns about one axis, `x`, `y` or `z`", span)
         .at("about which axis?")
         .help("such as `turn(y: 30deg)`; chain several with `|>`")
+}
+
+/// `turn(x: 30deg, y: 20deg)`
+pub(in crate::check) fn turn_axes(turns: &[String], span: Span) -> Diagnostic {
+    let diagnostic = Diagnostic::new(Code::E0201, "`turn` turns about one axis at a time", span);
+    let diagnostic = diagnostic.at("about several");
+    match turns {
+        [_, _, ..] => {
+            diagnostic.help(format!("write one for each, the first to act first: `{}`", turns.join(" |> ")))
+        }
+        _ => diagnostic.help(format!("write `{}`", turns.first().map_or("turn(y: 30deg)", String::as_str))),
+    }
 }
 
 pub(in crate::check) fn named_argument(function: Function, name: &Name) -> Diagnostic {

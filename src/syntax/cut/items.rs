@@ -7,7 +7,7 @@ use std::borrow::Cow;
 impl<'t> Cutter<'t> {
     pub(super) fn begin(&mut self, start: usize) {
         self.item = Some(start);
-        self.before_item = (self.out.sink.len(), self.out.comments.len());
+        self.before_item = (self.out.sink.held(), self.out.comments.len());
         let forgiven = self.base.forgiven;
         self.base = Level { forgiven, ..Level::new(0, start, self.indent) };
         self.end = start;

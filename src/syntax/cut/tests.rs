@@ -15,7 +15,12 @@ fn items(text: &str) -> Vec<String> {
 }
 
 fn codes(text: &str) -> Vec<Code> {
-    cut(SourceId(0), text, 512).sink.into_sorted().iter().map(|diagnostic| diagnostic.code).collect()
+    cut(SourceId(0), text, 512)
+        .sink
+        .into_sorted(|place| place)
+        .iter()
+        .map(|diagnostic| diagnostic.code)
+        .collect()
 }
 
 #[test]

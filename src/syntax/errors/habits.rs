@@ -128,6 +128,14 @@ pub(in crate::syntax) fn operator_for_function(
         .fix(right.after(), ")")
 }
 
+/// `[for i in list { … }]`, `[2 * i for i in list]`
+pub(in crate::syntax) fn of_each(word: Span) -> Diagnostic {
+    unexpected("for", word).at("repeats statements, and makes no list").help(
+        "draw in its body: `for i in range(3) { sphere { at: (3m * i, 0, 0), radius: 1m } }`; lists are written \
+         `[1, 4, 9]`, `range(3)` or `linspace(0, 1, 5)`",
+    )
+}
+
 /// `[0, 1, 2]m`
 pub(in crate::syntax) fn list_with_unit(unit: Span, open: Span, close: Span) -> Diagnostic {
     Diagnostic::new(Code::E0001, "a unit stands behind a list", unit)
