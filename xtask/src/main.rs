@@ -5,6 +5,7 @@
 
 mod compare;
 mod export;
+mod processors;
 mod readme;
 mod reference;
 mod tools;
@@ -28,6 +29,7 @@ const STEPS: &[(&str, Step)] = &[
     ("licences", licences),
     ("reference", reference::agreement),
     ("export", export::agreement),
+    ("processors", processors::same_bits),
     ("readme", readme::commands),
 ];
 
@@ -48,6 +50,7 @@ cargo xtask e2e [STEP…]
   licences   every dependency's licence is one that deny.toml allows
   reference  the room against a converged picture of another renderer (minutes)
   export     exported scenes against Mitsuba (from PyPI) and POV-Ray (povray, of Debian)
+  processors the same bytes on other processors, by emulation (qemu-user, gcc-aarch64-linux-gnu)
   readme     every command of the README, in a fresh clone of HEAD
 
 Without STEP all are run. Needs python3, bash, git and, for full-disk, leave to mount a tmpfs. What else a step needs

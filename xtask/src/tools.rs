@@ -9,14 +9,31 @@ pub const LLVM: &str = "/usr/lib/x86_64-linux-gnu/libLLVM.so.19.1";
 
 /// Has POV-Ray at hand.
 pub fn povray() -> Outcome {
-    let starts =
-        || Command::new("povray").arg("--version").output().is_ok_and(|output| output.status.success());
-    at_hand("povray", "povray", starts)
+    at_hand("povray", "povray", || starts("povray"))
 }
 
 /// Has LLVM at hand.
 pub fn llvm() -> Outcome {
     at_hand(LLVM, "libllvm19", || Path::new(LLVM).exists())
+}
+
+/// Links programs for ARM.
+pub const ARM_LINKER: &str = "aarch64-linux-gnu-gcc";
+
+/// Has emulators of other processors at hand.
+pub fn emulators() -> Outcome {
+    at_hand("qemu-aarch64", "qemu-user", || starts("qemu-aarch64") && starts("qemu-x86_64"))
+}
+
+/// Has what it takes to build programs for ARM at hand.
+pub fn arm() -> Outcome {
+    at_hand(ARM_LINKER, "gcc-aarch64-linux-gnu", || starts(ARM_LINKER))?;
+    run(Command::new("rustup").args(["--quiet", "target", "add", "aarch64-unknown-linux-gnu"]))
+}
+
+/// Whether a program is there.
+fn starts(program: &str) -> bool {
+    Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success())
 }
 
 /// A Python that has Mitsuba, in an environment in a folder, made if need be.
