@@ -22,6 +22,7 @@ use crate::scene::{Material, PrimitiveId, Scene, Shape};
 pub struct Surfaces<'s> {
     flats: Vec<Flat>,
     giants: Vec<Giant>,
+    /// None where there is a hierarchy, which holds them.
     balls: Vec<Ball>,
     quadrics: Vec<Quadric>,
     exact: Exact<'s>,
@@ -39,13 +40,15 @@ pub struct Surfaces<'s> {
     any_smooth: bool,
     /// Which slots bound a solid.
     closed: Vec<bool>,
-    /// Each slot's height function ½κ|y|² + n·y + h about its anchor, y = p − anchor: anchor and κ, n and h.
-    bends: Table,
+    /// Each slot's height function ½κ|y|² + n·y + h about its anchor, y = p − anchor: anchor and κ, or of a ball centre
+    /// and radius.
+    anchors: Table,
+    /// Of planes and giants n and h, and a row of zeros for balls, of which they are 0 and half the radius.
     leans: Table,
 }
 
 /// About what a surface takes in the tables.
-pub(super) const BYTES_A_SURFACE: usize = size_of::<Ball>() + 2 * size_of::<[f32; 4]>() + 13;
+pub(super) const BYTES_A_SURFACE: usize = size_of::<Ball>() + size_of::<[f32; 4]>() + 13;
 
 /// Up to so many surfaces with an end are tested one by one: that is faster than a hierarchy.
 const DIRECT: usize = 64;
@@ -99,10 +102,10 @@ impl<'s> Surfaces<'s> {
             tree: None,
             any_smooth: false,
             closed: Vec::new(),
-            bends: Table::default(),
+            anchors: Table::default(),
             leans: Table::default(),
         };
-        let (mut bends, mut leans) = (Vec::new(), Vec::new());
+        let (mut anchors, mut leans) = (Vec::with_capacity(order.len()), Vec::new());
         for (slot, (kind, id)) in (0..).zip(order) {
             surfaces.slots[id.0 as usize] = slot;
             let primitive = &scene.primitives[id.0 as usize];
@@ -112,70 +115,81 @@ impl<'s> Surfaces<'s> {
                 glows: matches!(material, Material::Emitter { .. }),
                 opaque: !matches!(material, Material::Dielectric { .. }),
             };
-            let (bend, lean) = surfaces.push(kind, &primitive.shape, nature, space);
-            bends.push(bend);
-            leans.push(lean);
+            let (anchor, lean) = surfaces.push(kind, &primitive.shape, nature, space);
+            anchors.push(anchor);
+            leans.extend(lean);
         }
-        (surfaces.bends, surfaces.leans) = (Table::new(bends), Table::new(leans));
+        leans.push([0.0; 4]);
+        (surfaces.anchors, surfaces.leans) = (Table::new(anchors), Table::new(leans));
         surfaces.plant(scene, space);
         surfaces
     }
 
     /// Builds the hierarchy if there is much to test.
     fn plant(&mut self, scene: &Scene, space: &Space) {
-        let first = self.starts[1];
-        let bounded: Vec<Item> = (first..self.starts[4])
-            .filter_map(|slot| {
-                let shape = &scene.primitives[self.primitives[slot as usize].0 as usize].shape;
-                Item::new(slot, shape.bounds()?, space)
-            })
-            .collect();
-        if bounded.len() > DIRECT {
-            let held: Vec<bool> = {
-                let mut held = vec![false; self.quadrics.len()];
-                for slot in bounded.iter().map(|item| item.slot).filter(|slot| self.is_quadric(*slot)) {
-                    held[(slot - self.starts[2]) as usize] = true;
-                }
-                held
-            };
-            self.tree = Some(Tree::new(bounded, &self.balls, first));
-            self.direct_quadrics =
-                (0..).zip(held).filter(|(_, held)| !held).map(|(index, _)| index).collect();
+        let mut alone = vec![true; self.quadrics.len()];
+        self.tree = self.hierarchy(scene, space, |index| alone[index as usize] = false);
+        if self.tree.is_some() {
+            self.balls = Vec::new();
         } else {
-            self.direct_quadrics = (0..self.quadrics.len() as u32).collect();
+            alone.fill(true);
         }
+        self.direct_quadrics = (0..).zip(alone).filter(|(_, alone)| *alone).map(|(index, _)| index).collect();
     }
 
-    /// Adds a surface; its height function, see [`Surfaces::bends`].
-    fn push(&mut self, kind: Kind, shape: &Shape, nature: Nature, space: &Space) -> ([f32; 4], [f32; 4]) {
+    /// The hierarchy over what has an end, if that is much. Says which quadrics are among it.
+    pub fn hierarchy(&self, scene: &Scene, space: &Space, mut held: impl FnMut(u32)) -> Option<Tree> {
+        let first = self.starts[1];
+        let mut bounded = Vec::with_capacity((self.starts[4] - first) as usize);
+        for slot in first..self.starts[4] {
+            let bounds = scene.primitives[self.primitive(slot).0 as usize].shape.bounds();
+            if let Some(item) = bounds.and_then(|bounds| Item::new(slot, bounds, space)) {
+                bounded.push(item);
+                if self.is_quadric(slot) {
+                    held(slot - self.starts[2]);
+                }
+            }
+        }
+        let balls = &self.anchors.rows()[first as usize..self.starts[2] as usize];
+        (bounded.len() > DIRECT).then(|| Tree::new(bounded, balls, first))
+    }
+
+    /// Adds a surface; its rows of [`Surfaces::anchors`] and, if it has one, [`Surfaces::leans`].
+    fn push(
+        &mut self,
+        kind: Kind,
+        shape: &Shape,
+        nature: Nature,
+        space: &Space,
+    ) -> ([f32; 4], Option<[f32; 4]>) {
         match *shape {
             Shape::Plane { point, normal } => {
                 let flat = Flat::new(space.point(point), normal, nature);
                 self.flats.push(flat);
                 let [x, y, z] = flat.n;
-                ([0.0; 4], [x, y, z, flat.height])
+                ([0.0; 4], Some([x, y, z, flat.height]))
             }
             Shape::Sphere { center, radius } if kind == Kind::Giant => {
                 let giant = Giant::new(space.point(center), space.length(radius), nature);
                 self.giants.push(giant);
                 let [x, y, z] = giant.g;
-                ([0.0, 0.0, 0.0, giant.curvature], [x, y, z, giant.height])
+                ([0.0, 0.0, 0.0, giant.curvature], Some([x, y, z, giant.height]))
             }
             Shape::Sphere { center, radius } => {
                 let ball = Ball::new(space.point(center), space.length(radius), nature);
                 self.balls.push(ball);
                 let [x, y, z] = ball.center;
-                ([x, y, z, 1.0 / ball.radius], [0.0, 0.0, 0.0, -0.5 * ball.radius])
+                ([x, y, z, ball.radius], None)
             }
             Shape::Quadric(ref quadric) => {
                 self.quadrics.push(Quadric::new(quadric, space, nature));
-                ([0.0; 4], [0.0, 0.0, 1.0, 0.0])
+                ([0.0; 4], None)
             }
             Shape::Mesh(ref instance) => {
                 self.any_smooth |= instance.smooth;
-                ([0.0; 4], [0.0, 0.0, 1.0, 0.0])
+                ([0.0; 4], None)
             }
-            Shape::Disk(_) | Shape::Box(_) => ([0.0; 4], [0.0, 0.0, 1.0, 0.0]),
+            Shape::Disk(_) | Shape::Box(_) => ([0.0; 4], None),
         }
     }
 
@@ -244,7 +258,7 @@ impl<'s> Surfaces<'s> {
             at += 1;
         }
         at = self.starts[1];
-        for ball in &self.balls[..self.direct_balls()] {
+        for ball in &self.balls {
             let here = ball.meet(l, &bundle, place(at, Face::Side));
             (best, met) = nearer(l, (best, met), here, at, ball.glows, except);
             at += 1;
@@ -260,14 +274,12 @@ impl<'s> Surfaces<'s> {
         }
         let none = met.is(l.u(NOWHERE));
         let mut hits = Hits::<L> { t: none.pick(limit, best.over / best.under), place: met, detail: l.u(0) };
-        if self.tree.is_some() || self.starts[3] < self.starts[4] {
+        if let Some(tree) = &self.tree {
+            hits = tree.closest(l, self, rays, hits, except, wanted);
+        } else if self.starts[3] < self.starts[4] {
             for lane in wanted.lanes() {
-                let ray = rays.lane(lane);
                 let mut hit = hits.lane(lane);
-                match &self.tree {
-                    Some(tree) => tree.closest(l.group(), self, &ray, &mut hit, except.get(lane)),
-                    None => self.closest_exact(&ray, &mut hit, except.get(lane)),
-                }
+                self.closest_exact(&rays.lane(lane), &mut hit, except.get(lane));
                 hits.set(lane, &hit);
             }
         }
@@ -303,7 +315,7 @@ impl<'s> Surfaces<'s> {
             at += 1;
         }
         at = self.starts[1];
-        for ball in &self.balls[..self.direct_balls()] {
+        for ball in &self.balls {
             let here = ball.meet(l, &bundle, place(at, Face::Side));
             found = found | counts(l, here, limit, at, ball.glows, except);
             at += 1;
@@ -314,27 +326,20 @@ impl<'s> Surfaces<'s> {
             let here = Ratios { over: quadric.meet(l, rays, at).0, under: l.f(1.0) };
             found = found | counts(l, here, limit, at, quadric.glows, except);
         }
-        if self.tree.is_some() || self.starts[3] < self.starts[4] {
+        let wanted = wanted & !found;
+        if let Some(tree) = &self.tree {
+            found = found | tree.occluded(l, self, rays, limit.over, except, wanted);
+        } else if self.starts[3] < self.starts[4] {
             let mut bits = 0;
-            for lane in (wanted & !found).lanes() {
-                let ray = rays.lane(lane);
-                let (distance, except) = (limit.over.get(lane), except.get(lane));
-                let hidden = match &self.tree {
-                    Some(tree) => tree.occluded(l.group(), self, &ray, distance, except),
-                    None => (self.starts[3]..self.starts[4])
-                        .any(|slot| slot != except && self.meet_other(slot, &ray).t < distance),
-                };
+            for lane in wanted.lanes() {
+                let (ray, distance, except) = (rays.lane(lane), limit.over.get(lane), except.get(lane));
+                let hidden = (self.starts[3]..self.starts[4])
+                    .any(|slot| slot != except && self.meet_other(slot, &ray).t < distance);
                 bits |= u32::from(hidden) << lane;
             }
             found = found | l.mask(bits);
         }
         found
-    }
-
-    /// The balls that are tested one by one: all or none.
-    #[inline(always)]
-    fn direct_balls(&self) -> usize {
-        if self.tree.is_some() { 0 } else { self.balls.len() }
     }
 
     /// Where a ray meets a quadric, or what is met exactly.
@@ -385,9 +390,12 @@ impl<'s> Surfaces<'s> {
     fn points_here<L: Lanes>(&self, l: L, rays: &Rays<L>, hits: &Hits<L>, met: L::M) -> Points<L> {
         let near = rays.o + rays.d * met.pick(hits.t, l.f(0.0));
         let slots = met.pick_word(hits.place >> FACE_BITS, l.u(0));
-        let [ax, ay, az, curvature] = l.look_up(&self.bends, slots);
-        let [nx, ny, nz, height] = l.look_up(&self.leans, slots);
+        let leaning = slots.below(l.u(self.starts[1]));
+        let [ax, ay, az, last] = l.look_up(&self.anchors, slots);
+        let [nx, ny, nz, height] = l.look_up(&self.leans, leaning.pick_word(slots, l.u(self.starts[1])));
         let (anchor, lean) = (V::new(ax, ay, az), V::new(nx, ny, nz));
+        let curvature = leaning.pick(last, l.f(1.0) / last);
+        let height = leaning.pick(height, last * -0.5);
         let y = near - anchor;
         let slope = lean + y * curvature;
         let above = y.squared() * (curvature * 0.5) + lean.dot(y) + height;
@@ -415,7 +423,8 @@ impl<'s> Surfaces<'s> {
         met: L::M,
     ) -> [V<L>; 2] {
         let slots = met.pick_word(hits.place >> FACE_BITS, l.u(0));
-        let [.., curvature] = l.look_up(&self.bends, slots);
+        let [.., last] = l.look_up(&self.anchors, slots);
+        let curvature = slots.below(l.u(self.starts[1])).pick(last, l.f(1.0) / last);
         let mut changes = [steps[0] * curvature, steps[1] * curvature];
         let bent = met & !slots.below(l.u(self.starts[2])) & slots.below(l.u(self.starts[3]));
         for lane in bent.lanes() {
