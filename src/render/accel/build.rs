@@ -2,10 +2,10 @@
 //!
 //! Nodes are parted in two by the surface-area heuristic over binned centres (Ingo Wald, "On fast construction of
 //! SAH-based bounding volume hierarchies", 2007), the largest part again, until there are eight. A leaf costs the same
-//! for one surface as for eight.
+//! for one ball as for eight; what is no ball is a child of its own.
 
-use super::{Item, LEAF, Leaf, MIXED, Node, Tree, WIDE};
-use crate::render::shape::{Face, NOWHERE, place};
+use super::{ALONE, EMPTY, Item, LEAF, Leaf, Node, Tree, WIDE};
+use crate::render::shape::{Face, place};
 use rayon::prelude::*;
 
 /// No node is deeper: below [`DEEPEST_AREA`] parts are halved by number, which takes ten levels for all slots that there
@@ -31,7 +31,9 @@ struct Sum {
     all: Extent,
     /// Around their centres, in twice their coordinates.
     centers: Extent,
-    count: usize,
+    balls: usize,
+    /// What is no ball.
+    alone: usize,
 }
 
 /// Items that lie together.
@@ -83,14 +85,15 @@ fn node(group: Group, balls: Balls, depth: usize, part: &mut Part) {
     part.nodes.push(Node::over(&children.each_ref().map(|child| child.as_ref().map(|child| child.sum.all))));
     for (number, child) in children.into_iter().enumerate() {
         let Some(child) = child else { continue };
-        part.nodes[at].children[number] = if child.items.len() <= WIDE {
-            part.leaves.push(Leaf::of(child.items, balls));
-            let mixed = part.leaves.last().is_some_and(Leaf::is_mixed);
-            (part.leaves.len() - 1) as u32 | if mixed { LEAF | MIXED } else { LEAF }
-        } else {
+        part.nodes[at].children[number] = if child.sum.children() > 1 {
             let below = part.nodes.len() as u32;
             node(child, balls, depth + 1, part);
             below
+        } else if child.sum.alone == 1 {
+            ALONE | child.items[0].slot
+        } else {
+            part.leaves.push(Leaf::of(child.items, balls));
+            LEAF | (part.leaves.len() - 1) as u32
         };
     }
 }
@@ -109,7 +112,11 @@ fn join(bounds: [Option<Extent>; WIDE], parts: Vec<Option<Part>>) -> Part {
         all.nodes[0].children[number] = nodes;
         all.nodes.extend(part.nodes.into_iter().map(|mut node| {
             for child in &mut node.children {
-                *child += if *child & LEAF == 0 { nodes } else { leaves };
+                *child += match *child & (LEAF | ALONE) {
+                    LEAF => leaves,
+                    ALONE => 0,
+                    _ => nodes,
+                };
             }
             node
         }));
@@ -121,7 +128,7 @@ fn join(bounds: [Option<Extent>; WIDE], parts: Vec<Option<Part>>) -> Part {
 impl Node {
     /// One of boxes whose contents are not known yet.
     fn over(boxes: &[Option<Extent>; WIDE]) -> Node {
-        let mut node = Node { bounds: [[[0.0; WIDE]; 2]; 3], children: [LEAF; WIDE] };
+        let mut node = Node { bounds: [[[0.0; WIDE]; 2]; 3], children: [ALONE; WIDE] };
         for (number, extent) in boxes.iter().enumerate() {
             let extent = extent.unwrap_or(Extent::NONE);
             for axis in 0..3 {
@@ -136,22 +143,16 @@ impl Node {
 impl Leaf {
     fn of(items: &mut [Item], balls: Balls) -> Leaf {
         items.sort_unstable_by_key(|item| item.slot);
-        let mut leaf = Leaf { center: [[0.0; WIDE]; 3], radius: [f32::NAN; WIDE], places: [NOWHERE; WIDE] };
+        let mut leaf = Leaf { center: [[0.0; WIDE]; 3], radius: [f32::NAN; WIDE], places: [EMPTY; WIDE] };
         for (i, item) in items.iter().enumerate() {
             leaf.places[i] = place(item.slot, Face::Side);
-            if let Some([x, y, z, radius]) = balls.rows.get((item.slot - balls.first) as usize) {
-                leaf.radius[i] = *radius;
-                for (column, value) in leaf.center.iter_mut().zip([x, y, z]) {
-                    column[i] = *value;
-                }
+            let [x, y, z, radius] = balls.rows[(item.slot - balls.first) as usize];
+            leaf.radius[i] = radius;
+            for (column, value) in leaf.center.iter_mut().zip([x, y, z]) {
+                column[i] = value;
             }
         }
         leaf
-    }
-
-    /// Whether there are surfaces that are no balls.
-    fn is_mixed(&self) -> bool {
-        self.places.iter().zip(self.radius).any(|(place, radius)| *place != NOWHERE && radius.is_nan())
     }
 }
 
@@ -170,19 +171,19 @@ fn children(group: Group, depth: usize) -> [Option<Group>; WIDE] {
 
 /// Which of the groups under a node is best parted further.
 fn next_to_split(groups: &[Group], depth: usize) -> Option<usize> {
-    let count = |at: usize| groups[at].items.len();
-    let area = |at: usize| match depth < DEEPEST_AREA {
+    let children = |at: usize| groups[at].sum.children();
+    let size = |at: usize| match depth < DEEPEST_AREA {
         true => groups[at].sum.all.half_area(),
-        false => count(at) as f32,
+        false => groups[at].items.len() as f32,
     };
-    let large = (0..groups.len()).filter(|at| count(*at) > WIDE * WIDE);
-    let largest = large.max_by(|&a, &b| area(a).total_cmp(&area(b)));
+    let large = (0..groups.len()).filter(|at| children(*at) > WIDE);
+    let largest = large.max_by(|&a, &b| size(a).total_cmp(&size(b)));
     if groups.len() < WIDE && largest.is_some() {
         return largest;
     }
     let room = WIDE + 1 - groups.len();
-    let fits = |at: &usize| count(*at) > WIDE && (groups.len() == 1 || count(*at).div_ceil(WIDE) <= room);
-    (0..groups.len()).filter(fits).min_by_key(|at| count(*at))
+    let fits = |at: &usize| children(*at) > 1 && (groups.len() == 1 || children(*at) <= room);
+    (0..groups.len()).filter(fits).min_by_key(|at| children(*at))
 }
 
 /// Gives each group the number whose bits say best on which side of the middle it is: the one that is farthest out towards
@@ -238,7 +239,7 @@ fn split(group: Group, depth: usize) -> (Group, Group) {
 /// The border between bins with the least sum of area times leaves, and what is below and above it; none if all is on one
 /// side.
 fn best_border(bins: &[Sum; BINS]) -> Option<(usize, [Sum; 2])> {
-    let cost = |sum: &Sum| sum.all.half_area() * sum.count.div_ceil(WIDE) as f32;
+    let cost = |sum: &Sum| sum.all.half_area() * sum.children() as f32;
     let mut above = [Sum::NONE; BINS];
     let mut sum = Sum::NONE;
     for i in (1..BINS).rev() {
@@ -250,7 +251,7 @@ fn best_border(bins: &[Sum; BINS]) -> Option<(usize, [Sum; 2])> {
     let mut below = Sum::NONE;
     for i in 1..BINS {
         below = below.and(&bins[i - 1]);
-        if below.count == 0 || above[i].count == 0 {
+        if below.children() == 0 || above[i].children() == 0 {
             continue;
         }
         let cost = cost(&below) + cost(&above[i]);
@@ -292,7 +293,12 @@ impl Item {
 }
 
 impl Sum {
-    const NONE: Sum = Sum { all: Extent::NONE, centers: Extent::NONE, count: 0 };
+    const NONE: Sum = Sum { all: Extent::NONE, centers: Extent::NONE, balls: 0, alone: 0 };
+
+    /// About how many children of a node they make.
+    fn children(&self) -> usize {
+        self.balls.div_ceil(WIDE) + self.alone
+    }
 
     #[inline(always)]
     fn with(&self, item: &Item) -> Sum {
@@ -300,7 +306,8 @@ impl Sum {
         Sum {
             all: self.all.and(&Extent { min: item.min, max: item.max }),
             centers: self.centers.and(&Extent { min: center, max: center }),
-            count: self.count + 1,
+            balls: self.balls + usize::from(!item.alone),
+            alone: self.alone + usize::from(item.alone),
         }
     }
 
@@ -309,7 +316,8 @@ impl Sum {
         Sum {
             all: self.all.and(&other.all),
             centers: self.centers.and(&other.centers),
-            count: self.count + other.count,
+            balls: self.balls + other.balls,
+            alone: self.alone + other.alone,
         }
     }
 }

@@ -8,7 +8,7 @@ mod walk;
 
 use super::lanes::{Float, Lanes, Word};
 use super::shape::ball;
-use super::shape::{Hits, Rays};
+use super::shape::{Hits, NOWHERE, Rays};
 use super::space::Space;
 use super::surfaces::Surfaces;
 use super::vector::V;
@@ -17,10 +17,12 @@ use walk::Walks;
 
 /// Children of a node, and surfaces of a leaf.
 const WIDE: usize = 8;
-/// A child that is a leaf has this bit.
+/// A child that is a leaf of balls has this bit.
 const LEAF: u32 = 1 << 31;
-/// A leaf with surfaces that are no balls has this bit too.
-const MIXED: u32 = 1 << 30;
+/// A child that is a surface of another kind has this bit.
+const ALONE: u32 = 1 << 30;
+/// The place of no ball, on which no ray starts.
+const EMPTY: u32 = NOWHERE - 1;
 
 /// The hierarchy. The first node is the root.
 pub struct Tree {
@@ -35,18 +37,18 @@ pub struct Tree {
 struct Node {
     /// For each axis the lower ends, and the upper ends. A box that is not there ends before it begins.
     bounds: [[[f32; WIDE]; 2]; 3],
-    /// Index of a node, or with [`LEAF`] of a leaf.
+    /// Index of a node, with [`LEAF`] of a leaf, or with [`ALONE`] the slot of a surface.
     children: [u32; WIDE],
 }
 
-/// Up to eight surfaces, side by side.
+/// Up to eight balls, side by side.
 #[derive(Clone)]
 #[repr(align(32))]
 struct Leaf {
     center: [[f32; WIDE]; 3],
     /// No number where there is no ball.
     radius: [f32; WIDE],
-    /// The place of each surface's side, [`NOWHERE`](super::shape::NOWHERE) where there is no surface.
+    /// The place of each, [`EMPTY`] where there is none.
     places: [u32; WIDE],
 }
 
@@ -58,20 +60,21 @@ pub(super) const BYTES_A_SURFACE: usize =
 /// A surface while the hierarchy is built.
 #[derive(Clone, Copy)]
 pub struct Item {
-    /// Its slot.
-    pub slot: u32,
+    slot: u32,
+    /// Whether it is no ball: it gets a box of its own, since it is dear to test.
+    alone: bool,
     min: [f32; 3],
     max: [f32; 3],
 }
 
 impl Item {
     /// A surface within bounds, if they are ones in the tracer's coordinates.
-    pub fn new(slot: u32, bounds: Bounds, space: &Space) -> Option<Item> {
+    pub fn new(slot: u32, alone: bool, bounds: Bounds, space: &Space) -> Option<Item> {
         let (min, max) = (space.point(bounds.min), space.point(bounds.max));
         // What coordinates and roots may be wrong by.
         let slack = 4.0 * f64::from(f32::EPSILON) * min.abs().max(max.abs()).max_element();
         let (min, max) = (super::vector::single(min - slack), super::vector::single(max + slack));
-        let item = Item { slot, min, max };
+        let item = Item { slot, alone, min, max };
         min.iter().chain(&max).all(|v| v.is_finite()).then_some(item)
     }
 }
@@ -200,7 +203,7 @@ impl Leaf {
         let [x, y, z] = &self.center;
         let center = V::<G>::new(g.load(&x[from..]), g.load(&y[from..]), g.load(&z[from..]));
         let radius = g.load(&self.radius[from..]);
-        let on_it = g.load_words(&self.places[from..]).is(g.u(line.start)) & radius.le(radius);
+        let on_it = g.load_words(&self.places[from..]).is(g.u(line.start));
         let (o, d) = (V::splat(g, line.o), V::splat(g, line.d));
         let ratios = ball::meet(g, o - center, d, radius, on_it);
         ratios.over / ratios.under

@@ -1,8 +1,8 @@
 //! Rays on their way through the hierarchy, two at a time: while one waits for memory, the other goes on.
 
-use super::{LEAF, Leaf, Line, MIXED, Tree, WIDE, build};
+use super::{ALONE, LEAF, Leaf, Line, Tree, WIDE, build};
 use crate::render::lanes::{Float, Lanes, MOST, Mask, One, Word, apart};
-use crate::render::shape::{Hits, Rays, slot};
+use crate::render::shape::{Hits, Rays};
 use crate::render::surfaces::Surfaces;
 use crate::render::vector::V;
 
@@ -195,16 +195,18 @@ impl Walk {
         if stack.enters[self.waiting] > self.limit {
             return;
         }
-        if at & LEAF == 0 {
+        if at & (LEAF | ALONE) == 0 {
             let room = self.waiting..self.waiting + WIDE;
             let enters = (&mut stack.enters[room.clone()]).try_into().expect("room for eight");
             let nodes = (&mut stack.nodes[room]).try_into().expect("room for eight");
             self.waiting += tree.nodes[at as usize].open(g, &self.line, self.limit, enters, nodes);
             return;
         }
-        let leaf = &tree.leaves[(at & !(LEAF | MIXED)) as usize];
-        let met = self.meet(g, leaf, walks.except[self.lane % MOST]);
-        let met = met | (at & MIXED != 0 && self.meet_others(leaf, surfaces, walks));
+        let met = if at & LEAF != 0 {
+            self.meet(g, &tree.leaves[(at & !LEAF) as usize], walks.except[self.lane % MOST])
+        } else {
+            self.meet_other(at & !ALONE, surfaces, walks)
+        };
         if met {
             self.limit = self.hit.t.min(f32::MAX) * SLACK;
             if ANY {
@@ -230,18 +232,10 @@ impl Walk {
         any
     }
 
-    /// Whether the ray meets any other surface of a leaf before all else.
-    #[cold]
+    /// Whether the ray meets a surface that is no ball before all else.
     #[inline(never)]
-    fn meet_others(&mut self, leaf: &Leaf, surfaces: &Surfaces, walks: &Walks) -> bool {
-        let ray = walks.ray(self.lane);
-        let mut any = false;
-        for (place, radius) in leaf.places.iter().zip(leaf.radius) {
-            if radius.is_nan() && *place != crate::render::shape::NOWHERE {
-                any |= self.take(surfaces.meet_other(slot(*place), &ray), walks.except[self.lane]);
-            }
-        }
-        any
+    fn meet_other(&mut self, slot: u32, surfaces: &Surfaces, walks: &Walks) -> bool {
+        self.take(surfaces.meet_other(slot, &walks.ray(self.lane)), walks.except[self.lane])
     }
 
     #[inline(always)]
