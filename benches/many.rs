@@ -2,8 +2,8 @@
 //! what they meet, and what the hierarchy takes. The table is in markdown.
 //!
 //! Balls stand on a plain as in `xtask/compare/balls.rt`. Rays go as those of paths of five bounces do: from the camera, and
-//! on from what they meet in directions of chance; in no order. What other work on the machine takes, it takes from all
-//! rows; of several rounds the best counts.
+//! on from what they meet in directions of chance; in no order. Times are processor time where the system tells it, as Linux
+//! does, and so nearly the same on a busy machine; of several rounds the best counts.
 
 use rt_lang::files::{FileError, FilePath, Files};
 use rt_lang::math::DVec3;
@@ -27,39 +27,52 @@ impl Files for Alone {
     }
 }
 
+#[expect(clippy::print_stdout, reason = "a table for a person is what this makes")]
 fn main() {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     println!(
-        "| balls | M rays/s, 1 thread | {threads} threads | hidden or not, {threads} threads | built in s | bytes a ball |"
+        "| balls | M rays/s, 1 thread | {threads} threads | hidden or not, {threads} threads | built in s, 1 thread | bytes a ball |"
     );
     println!("|---|---|---|---|---|---|");
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("there is one more thread");
     for power in 2..=7 {
         let count = 10_u32.pow(power);
         let scene = balls(count);
         let tracer = Tracer::new(&scene);
         let strays = tracer.strays(RAYS, BOUNCES);
-        let one = rate(&tracer, &strays, None, 1);
+        let alone = rate(&tracer, &strays, None, 1);
         let all = rate(&tracer, &strays, None, threads);
         let hidden = rate(&tracer, &strays, Some(f32::INFINITY), threads);
-        let start = Instant::now();
-        let bytes = tracer.hierarchy().expect("more than are tested one by one") as f64 / f64::from(count);
-        let built = start.elapsed().as_secs_f64();
-        println!("| {count} | {one:.2} | {all:.2} | {hidden:.2} | {built:.4} | {bytes:.1} |");
+        let (built, bytes) = one.install(|| timed(|| tracer.hierarchy()));
+        let bytes = bytes.expect("more than are tested one by one") as f64 / f64::from(count);
+        println!("| {count} | {alone:.2} | {all:.2} | {hidden:.2} | {built:.4} | {bytes:.1} |");
     }
 }
 
-/// Millions of rays a second.
+/// Millions of rays a second, in all threads together.
 fn rate(tracer: &Tracer, strays: &Strays, within: Option<f32>, threads: usize) -> f64 {
+    let cast = || strays.len() as f64 / timed(|| tracer.cast(strays, within)).0 / 1e6;
     let round = |_| {
-        let start = Instant::now();
         std::thread::scope(|scope| {
-            for _ in 0..threads {
-                scope.spawn(|| std::hint::black_box(tracer.cast(strays, within)));
-            }
-        });
-        (strays.len() * threads) as f64 / start.elapsed().as_secs_f64() / 1e6
+            let threads: Vec<_> = (0..threads).map(|_| scope.spawn(cast)).collect();
+            threads.into_iter().map(|thread| thread.join().expect("casting rays cannot fail")).sum()
+        })
     };
     (0..ROUNDS).map(round).fold(0.0, f64::max)
+}
+
+/// Seconds that something takes, and what it gives.
+fn timed<T>(f: impl FnOnce() -> T) -> (f64, T) {
+    let (start, before) = (Instant::now(), processor_time());
+    let result = f();
+    let clock = start.elapsed().as_secs_f64();
+    (before.zip(processor_time()).map_or(clock, |(before, after)| after - before), result)
+}
+
+/// Seconds of processor time that the thread has had, where the system tells it.
+fn processor_time() -> Option<f64> {
+    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    Some(told.split(' ').next()?.parse::<f64>().ok()? * 1e-9)
 }
 
 /// So many on a plain, as the script has them; made here, since text would take longer than all the rest.

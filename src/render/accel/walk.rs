@@ -57,10 +57,12 @@ impl Walks {
             met: [0; MOST],
             met_detail: [0; MOST],
         };
-        let [x, y, z] = &mut walks.o;
-        (rays.o.x.store(x), rays.o.y.store(y), rays.o.z.store(z));
-        let [x, y, z] = &mut walks.d;
-        (rays.d.x.store(x), rays.d.y.store(y), rays.d.z.store(z));
+        rays.o.x.store(&mut walks.o[0]);
+        rays.o.y.store(&mut walks.o[1]);
+        rays.o.z.store(&mut walks.o[2]);
+        rays.d.x.store(&mut walks.d[0]);
+        rays.d.y.store(&mut walks.d[1]);
+        rays.d.z.store(&mut walks.d[2]);
         rays.start.store(&mut walks.start);
         rays.detail.store(&mut walks.detail);
         except.store(&mut walks.except);
