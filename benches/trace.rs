@@ -5,6 +5,7 @@
 //! |---|---|
 //! | `intersection` | camera rays against a few surfaces, one after the other |
 //! | `traversal` | camera rays through the hierarchy over many |
+//! | `stray` | the same for rays that have nothing to do with each other, without paths; an item is a ray |
 //! | `shading` | whole paths in a room of every material |
 //! | `incoherent` | whole paths among many balls under a sky |
 //! | `building` | tables and hierarchy; an item is a ball |
@@ -91,6 +92,14 @@ fn intersection(bencher: Bencher, level: Level) {
 #[divan::bench(args = levels())]
 fn traversal(bencher: Bencher, level: Level) {
     paths(bencher, level, &scene(&balls(100_000), 0));
+}
+
+#[divan::bench(args = levels())]
+fn stray(bencher: Bencher, level: Level) {
+    let scene = scene(&balls(100_000), 5);
+    let tracer = Tracer::new(&scene).on(level);
+    let strays = tracer.strays(20_000, 5);
+    bencher.counter(ItemsCount::new(strays.len())).bench(|| tracer.cast(&strays, None));
 }
 
 #[divan::bench(args = levels())]

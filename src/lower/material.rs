@@ -15,8 +15,7 @@ use std::rc::Rc;
 #[derive(Default)]
 pub(super) struct Materials {
     all: Vec<Material>,
-    /// By canonical bytes.
-    known: BTreeMap<Vec<u8>, MaterialId>,
+    known: Known,
     /// By the thing that several surfaces share, which lives as long as the things do; what is made of nothing
     /// stands under none.
     shared: BTreeMap<Option<*const Made>, MaterialId>,
@@ -24,11 +23,11 @@ pub(super) struct Materials {
 
 impl Materials {
     pub(super) fn add(&mut self, material: Material) -> MaterialId {
-        let key = postcard::to_stdvec(&material).expect("a material is plain numbers");
-        *self.known.entry(key).or_insert_with(|| {
+        let id = self.known.get_or_add(&self.all, &material);
+        if id.0 as usize == self.all.len() {
             self.all.push(material);
-            MaterialId(self.all.len() as u32 - 1)
-        })
+        }
+        id
     }
 
     pub(super) fn get(&self, id: MaterialId) -> &Material {
@@ -54,6 +53,61 @@ impl Materials {
     pub(super) fn finish(self) -> Vec<Material> {
         self.all
     }
+}
+
+/// Where materials are, by what their canonical bytes are hashed to: every surface may have one of its own, of which an
+/// ordered map takes several times the time and memory.
+#[derive(Default)]
+struct Known {
+    /// Each material's index is at the place that its hash says, or where that is taken at the next that is free. More than
+    /// half are free; of a power of two, if there are any.
+    places: Vec<u32>,
+}
+
+/// No material.
+const FREE: u32 = u32::MAX;
+
+impl Known {
+    /// The id of a material among all there are; if it is not among them, that of the next to be added.
+    fn get_or_add(&mut self, all: &[Material], material: &Material) -> MaterialId {
+        if 2 * all.len() >= self.places.len() {
+            self.grow(all);
+        }
+        let place = self.place(all, material);
+        if self.places[place] == FREE {
+            self.places[place] = all.len() as u32;
+        }
+        MaterialId(self.places[place])
+    }
+
+    /// The place of a material, or the free one where it belongs.
+    fn place(&self, all: &[Material], material: &Material) -> usize {
+        let last = self.places.len() - 1;
+        let mut place = hash(material) as usize & last;
+        while self.places[place] != FREE && all[self.places[place] as usize] != *material {
+            place = (place + 1) & last;
+        }
+        place
+    }
+
+    fn grow(&mut self, all: &[Material]) {
+        /// Room for the materials of most scenes.
+        const LEAST: usize = 64;
+        self.places = vec![FREE; (2 * self.places.len()).max(LEAST)];
+        for (index, material) in (0..).zip(all) {
+            let place = self.place(all, material);
+            self.places[place] = index;
+        }
+    }
+}
+
+fn hash(material: &Material) -> u64 {
+    /// More than any material takes: five numbers and what they are.
+    const ROOM: usize = 128;
+    let mut room = [0; ROOM];
+    let bytes = postcard::to_slice(material, &mut room).expect("a material is a few plain numbers");
+    let hash = blake3::hash(bytes);
+    hash.as_bytes().iter().take(8).fold(0, |sum, byte| sum << 8 | u64::from(*byte))
 }
 
 /// What surfaces share that have the same material. What glows may depend on the surface.

@@ -20,6 +20,7 @@
 //! | [`film`] | exact sums |
 //! | `prepass` | exposure and the film's scale |
 //! | [`control`] | cancelling and progress |
+//! | `stray` | rays without pictures, to measure |
 //!
 //! Set-up is done in double precision in the world; paths are traced in single precision, see [`shape`] for why that is
 //! enough. `tests/oracle` holds an integrator that shares none of this, in double precision, to compare with.
@@ -50,6 +51,7 @@ mod space;
 mod surfaces;
 #[cfg(test)]
 mod tests;
+mod stray;
 pub mod texture;
 mod vector;
 mod warp;
@@ -78,6 +80,7 @@ use rayon::prelude::*;
 use shape::{Face, Hits, Points, decode, slot};
 use space::Space;
 use std::collections::BTreeMap;
+pub use stray::Strays;
 use surfaces::Surfaces;
 
 /// A scene, ready to be traced.

@@ -3,25 +3,26 @@
 //! Each surface has a slot. Slots are ordered by kind, so that a few surfaces are tested kind by kind, each in all
 //! lanes at once: planes, giants, balls, quadrics; and one ray at a time what is left, see [`Exact`].
 
-use super::accel::{Item, Tree};
+mod build;
+
+use super::accel::Tree;
 use super::exact::{Exact, SurfacePoint};
 use super::lanes::{Float, Lanes, Mask, One, Table, Word, apart};
 use super::shape::ball::Ball;
 use super::shape::flat::Flat;
 use super::shape::giant::Giant;
 use super::shape::quadric::Quadric;
-use super::shape::{
-    Bundle, FACE_BITS, Face, Hits, NOWHERE, Nature, Points, Ratios, Rays, decode, place, slot,
-};
+use super::shape::{Bundle, FACE_BITS, Face, Hits, NOWHERE, Points, Ratios, Rays, decode, place, slot};
 use super::space::{Space, double};
 use super::vector::{V, single};
 use crate::math::DVec3;
-use crate::scene::{Material, PrimitiveId, Scene, Shape};
+use crate::scene::PrimitiveId;
 
 /// The surfaces, kind by kind.
 pub struct Surfaces<'s> {
     flats: Vec<Flat>,
     giants: Vec<Giant>,
+    /// None where there is a hierarchy, which holds them.
     balls: Vec<Ball>,
     quadrics: Vec<Quadric>,
     exact: Exact<'s>,
@@ -39,146 +40,17 @@ pub struct Surfaces<'s> {
     any_smooth: bool,
     /// Which slots bound a solid.
     closed: Vec<bool>,
-    /// Each slot's height function ½κ|y|² + n·y + h about its anchor, y = p − anchor: anchor and κ, n and h.
-    bends: Table,
+    /// Each slot's height function ½κ|y|² + n·y + h about its anchor, y = p − anchor: anchor and κ, or of a ball centre
+    /// and radius.
+    anchors: Table,
+    /// Of planes and giants n and h, and a row of zeros for balls, of which they are 0 and half the radius.
     leans: Table,
 }
 
 /// About what a surface takes in the tables.
-pub(super) const BYTES_A_SURFACE: usize = size_of::<Ball>() + 2 * size_of::<[f32; 4]>() + 13;
-
-/// Up to so many surfaces with an end are tested one by one: that is faster than a hierarchy.
-const DIRECT: usize = 64;
-
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Kind {
-    Flat,
-    Giant,
-    Ball,
-    Quadric,
-    Exact,
-}
+pub(super) const BYTES_A_SURFACE: usize = size_of::<Ball>() + size_of::<[f32; 4]>() + 13;
 
 impl<'s> Surfaces<'s> {
-    /// Those of a scene.
-    pub fn new(scene: &'s Scene, space: &Space) -> Surfaces<'s> {
-        let kind = |shape: &Shape| match shape {
-            Shape::Plane { .. } => Kind::Flat,
-            Shape::Sphere { center, radius } => {
-                if Giant::is(space.point(*center), space.length(*radius)) {
-                    Kind::Giant
-                } else {
-                    Kind::Ball
-                }
-            }
-            Shape::Quadric(_) => Kind::Quadric,
-            Shape::Disk(_) | Shape::Box(_) | Shape::Mesh(_) => Kind::Exact,
-        };
-        let mut order: Vec<(Kind, PrimitiveId)> =
-            (0..).zip(&scene.primitives).map(|(id, p)| (kind(&p.shape), PrimitiveId(id))).collect();
-        order.sort_unstable();
-        let count = |last: Kind| order.partition_point(|(kind, _)| *kind <= last) as u32;
-        let starts = [
-            count(Kind::Flat),
-            count(Kind::Giant),
-            count(Kind::Ball),
-            count(Kind::Quadric),
-            order.len() as u32,
-        ];
-        let mut surfaces = Surfaces {
-            flats: Vec::new(),
-            giants: Vec::new(),
-            balls: Vec::new(),
-            quadrics: Vec::new(),
-            starts,
-            primitives: order.iter().map(|(_, id)| *id).collect(),
-            slots: vec![0; order.len()],
-            exact: Exact::new(scene, space),
-            space: *space,
-            direct_quadrics: Vec::new(),
-            tree: None,
-            any_smooth: false,
-            closed: Vec::new(),
-            bends: Table::default(),
-            leans: Table::default(),
-        };
-        let (mut bends, mut leans) = (Vec::new(), Vec::new());
-        for (slot, (kind, id)) in (0..).zip(order) {
-            surfaces.slots[id.0 as usize] = slot;
-            let primitive = &scene.primitives[id.0 as usize];
-            surfaces.closed.push(primitive.shape.is_closed());
-            let material = scene.material(primitive);
-            let nature = Nature {
-                glows: matches!(material, Material::Emitter { .. }),
-                opaque: !matches!(material, Material::Dielectric { .. }),
-            };
-            let (bend, lean) = surfaces.push(kind, &primitive.shape, nature, space);
-            bends.push(bend);
-            leans.push(lean);
-        }
-        (surfaces.bends, surfaces.leans) = (Table::new(bends), Table::new(leans));
-        surfaces.plant(scene, space);
-        surfaces
-    }
-
-    /// Builds the hierarchy if there is much to test.
-    fn plant(&mut self, scene: &Scene, space: &Space) {
-        let first = self.starts[1];
-        let bounded: Vec<Item> = (first..self.starts[4])
-            .filter_map(|slot| {
-                let shape = &scene.primitives[self.primitives[slot as usize].0 as usize].shape;
-                Item::new(slot, shape.bounds()?, space)
-            })
-            .collect();
-        if bounded.len() > DIRECT {
-            let held: Vec<bool> = {
-                let mut held = vec![false; self.quadrics.len()];
-                for slot in bounded.iter().map(|item| item.slot).filter(|slot| self.is_quadric(*slot)) {
-                    held[(slot - self.starts[2]) as usize] = true;
-                }
-                held
-            };
-            self.tree = Some(Tree::new(bounded, &self.balls, first));
-            self.direct_quadrics =
-                (0..).zip(held).filter(|(_, held)| !held).map(|(index, _)| index).collect();
-        } else {
-            self.direct_quadrics = (0..self.quadrics.len() as u32).collect();
-        }
-    }
-
-    /// Adds a surface; its height function, see [`Surfaces::bends`].
-    fn push(&mut self, kind: Kind, shape: &Shape, nature: Nature, space: &Space) -> ([f32; 4], [f32; 4]) {
-        match *shape {
-            Shape::Plane { point, normal } => {
-                let flat = Flat::new(space.point(point), normal, nature);
-                self.flats.push(flat);
-                let [x, y, z] = flat.n;
-                ([0.0; 4], [x, y, z, flat.height])
-            }
-            Shape::Sphere { center, radius } if kind == Kind::Giant => {
-                let giant = Giant::new(space.point(center), space.length(radius), nature);
-                self.giants.push(giant);
-                let [x, y, z] = giant.g;
-                ([0.0, 0.0, 0.0, giant.curvature], [x, y, z, giant.height])
-            }
-            Shape::Sphere { center, radius } => {
-                let ball = Ball::new(space.point(center), space.length(radius), nature);
-                self.balls.push(ball);
-                let [x, y, z] = ball.center;
-                ([x, y, z, 1.0 / ball.radius], [0.0, 0.0, 0.0, -0.5 * ball.radius])
-            }
-            Shape::Quadric(ref quadric) => {
-                self.quadrics.push(Quadric::new(quadric, space, nature));
-                ([0.0; 4], [0.0, 0.0, 1.0, 0.0])
-            }
-            Shape::Mesh(ref instance) => {
-                self.any_smooth |= instance.smooth;
-                ([0.0; 4], [0.0, 0.0, 1.0, 0.0])
-            }
-            Shape::Disk(_) | Shape::Box(_) => ([0.0; 4], [0.0, 0.0, 1.0, 0.0]),
-        }
-    }
-
     /// The primitive in a slot.
     #[inline]
     pub fn primitive(&self, slot: u32) -> PrimitiveId {
@@ -244,7 +116,7 @@ impl<'s> Surfaces<'s> {
             at += 1;
         }
         at = self.starts[1];
-        for ball in &self.balls[..self.direct_balls()] {
+        for ball in &self.balls {
             let here = ball.meet(l, &bundle, place(at, Face::Side));
             (best, met) = nearer(l, (best, met), here, at, ball.glows, except);
             at += 1;
@@ -260,14 +132,12 @@ impl<'s> Surfaces<'s> {
         }
         let none = met.is(l.u(NOWHERE));
         let mut hits = Hits::<L> { t: none.pick(limit, best.over / best.under), place: met, detail: l.u(0) };
-        if self.tree.is_some() || self.starts[3] < self.starts[4] {
+        if let Some(tree) = &self.tree {
+            hits = tree.closest(l, self, rays, hits, except, wanted);
+        } else if self.starts[3] < self.starts[4] {
             for lane in wanted.lanes() {
-                let ray = rays.lane(lane);
                 let mut hit = hits.lane(lane);
-                match &self.tree {
-                    Some(tree) => tree.closest(l.group(), self, &ray, &mut hit, except.get(lane)),
-                    None => self.closest_exact(&ray, &mut hit, except.get(lane)),
-                }
+                self.closest_exact(&rays.lane(lane), &mut hit, except.get(lane));
                 hits.set(lane, &hit);
             }
         }
@@ -303,7 +173,7 @@ impl<'s> Surfaces<'s> {
             at += 1;
         }
         at = self.starts[1];
-        for ball in &self.balls[..self.direct_balls()] {
+        for ball in &self.balls {
             let here = ball.meet(l, &bundle, place(at, Face::Side));
             found = found | counts(l, here, limit, at, ball.glows, except);
             at += 1;
@@ -314,27 +184,20 @@ impl<'s> Surfaces<'s> {
             let here = Ratios { over: quadric.meet(l, rays, at).0, under: l.f(1.0) };
             found = found | counts(l, here, limit, at, quadric.glows, except);
         }
-        if self.tree.is_some() || self.starts[3] < self.starts[4] {
+        let wanted = wanted & !found;
+        if let Some(tree) = &self.tree {
+            found = found | tree.occluded(l, self, rays, limit.over, except, wanted);
+        } else if self.starts[3] < self.starts[4] {
             let mut bits = 0;
-            for lane in (wanted & !found).lanes() {
-                let ray = rays.lane(lane);
-                let (distance, except) = (limit.over.get(lane), except.get(lane));
-                let hidden = match &self.tree {
-                    Some(tree) => tree.occluded(l.group(), self, &ray, distance, except),
-                    None => (self.starts[3]..self.starts[4])
-                        .any(|slot| slot != except && self.meet_other(slot, &ray).t < distance),
-                };
+            for lane in wanted.lanes() {
+                let (ray, distance, except) = (rays.lane(lane), limit.over.get(lane), except.get(lane));
+                let hidden = (self.starts[3]..self.starts[4])
+                    .any(|slot| slot != except && self.meet_other(slot, &ray).t < distance);
                 bits |= u32::from(hidden) << lane;
             }
             found = found | l.mask(bits);
         }
         found
-    }
-
-    /// The balls that are tested one by one: all or none.
-    #[inline(always)]
-    fn direct_balls(&self) -> usize {
-        if self.tree.is_some() { 0 } else { self.balls.len() }
     }
 
     /// Where a ray meets a quadric, or what is met exactly.
@@ -385,9 +248,12 @@ impl<'s> Surfaces<'s> {
     fn points_here<L: Lanes>(&self, l: L, rays: &Rays<L>, hits: &Hits<L>, met: L::M) -> Points<L> {
         let near = rays.o + rays.d * met.pick(hits.t, l.f(0.0));
         let slots = met.pick_word(hits.place >> FACE_BITS, l.u(0));
-        let [ax, ay, az, curvature] = l.look_up(&self.bends, slots);
-        let [nx, ny, nz, height] = l.look_up(&self.leans, slots);
+        let leaning = slots.below(l.u(self.starts[1]));
+        let [ax, ay, az, last] = l.look_up(&self.anchors, slots);
+        let [nx, ny, nz, height] = l.look_up(&self.leans, leaning.pick_word(slots, l.u(self.starts[1])));
         let (anchor, lean) = (V::new(ax, ay, az), V::new(nx, ny, nz));
+        let curvature = leaning.pick(last, l.f(1.0) / last);
+        let height = leaning.pick(height, last * -0.5);
         let y = near - anchor;
         let slope = lean + y * curvature;
         let above = y.squared() * (curvature * 0.5) + lean.dot(y) + height;
@@ -415,7 +281,8 @@ impl<'s> Surfaces<'s> {
         met: L::M,
     ) -> [V<L>; 2] {
         let slots = met.pick_word(hits.place >> FACE_BITS, l.u(0));
-        let [.., curvature] = l.look_up(&self.bends, slots);
+        let [.., last] = l.look_up(&self.anchors, slots);
+        let curvature = slots.below(l.u(self.starts[1])).pick(last, l.f(1.0) / last);
         let mut changes = [steps[0] * curvature, steps[1] * curvature];
         let bent = met & !slots.below(l.u(self.starts[2])) & slots.below(l.u(self.starts[3]));
         for lane in bent.lanes() {

@@ -47,6 +47,21 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn load(self, from: &[f32]) -> Self::F;
     /// The first words of a slice, which has at least as many.
     fn load_words(self, from: &[u32]) -> Self::U;
+    /// Writes numbers and words of the lanes where the first number is at most the second to the starts of slices, first
+    /// those of which lane number xor `turn` is greatest; returns how many. There must be room for all lanes, and what is
+    /// behind the last may be overwritten.
+    #[inline(always)]
+    fn sift(self, ends: [Self::F; 2], words: Self::U, turn: u32, to: (&mut [f32], &mut [u32])) -> usize {
+        let some = ends[0].le(ends[1]).bits();
+        let (mut count, mut place) = (0, 0);
+        while place < Self::N {
+            let lane = (Self::N - 1 - place) ^ (turn as usize & (Self::N - 1));
+            (to.0[count], to.1[count]) = (ends[0].get(lane), words.get(lane));
+            count += (some >> lane & 1) as usize;
+            place += 1;
+        }
+        count
+    }
     /// The columns of rows of a table, a row a lane.
     fn look_up(self, table: &Table, rows: Self::U) -> [Self::F; 4];
     /// Calls something in a function of its own that is compiled for the instructions.
@@ -104,6 +119,16 @@ pub trait Float<L: Lanes<F = Self>>:
     #[inline(always)]
     fn greater(self, other: Self) -> Self {
         other.lt(self).pick(self, other)
+    }
+    /// The lesser of two numbers; where either is none, any of them.
+    #[inline(always)]
+    fn least(self, other: Self) -> Self {
+        self.lesser(other)
+    }
+    /// The greater of two numbers; where either is none, any of them.
+    #[inline(always)]
+    fn most(self, other: Self) -> Self {
+        self.greater(other)
     }
     /// Whether greater.
     #[inline(always)]

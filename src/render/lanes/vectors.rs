@@ -8,7 +8,7 @@ use fearless_simd::{
 };
 
 macro_rules! vectors {
-    ($(#[$doc:meta])* $name:ident, $n:literal, $group:ident, $look_up:ident, $float:ident, $word:ident, $int:ident, $byte:ident, $bytes:literal, $mask:ident) => {
+    ($(#[$doc:meta])* $name:ident, $n:literal, $group:ident, $look_up:ident, $float:ident, $word:ident, $int:ident, $byte:ident, $bytes:literal, $mask:ident $(, { $($own:tt)* })?) => {
         $(#[$doc])*
         #[derive(Clone, Copy)]
         pub struct $name<S>(pub S);
@@ -28,6 +28,7 @@ macro_rules! vectors {
             fn look_up(self, table: &Table, rows: $word<S>) -> [$float<S>; 4] {
                 $look_up(self.0, table, rows)
             }
+            $($($own)*)?
             #[inline(always)]
             fn f(self, value: f32) -> $float<S> {
                 $float::splat(self.0, value)
@@ -74,6 +75,14 @@ macro_rules! vectors {
             #[inline(always)]
             fn le(self, other: Self) -> $mask<S> {
                 self.simd_le(other)
+            }
+            #[inline(always)]
+            fn least(self, other: Self) -> Self {
+                self.min(other)
+            }
+            #[inline(always)]
+            fn most(self, other: Self) -> Self {
+                self.max(other)
             }
             #[inline(always)]
             fn bits(self) -> $word<S> {
@@ -195,7 +204,18 @@ vectors! {
 }
 vectors! {
     /// Eight lanes: a register of AVX2.
-    Eight, 8, Eight, look_up_eight, f32x8, u32x8, i32x8, u8x32, 32, mask32x8
+    Eight, 8, Eight, look_up_eight, f32x8, u32x8, i32x8, u8x32, 32, mask32x8, {
+        #[inline(always)]
+        fn sift(
+            self,
+            [enter, leave]: [f32x8<S>; 2],
+            words: u32x8<S>,
+            turn: u32,
+            to: (&mut [f32], &mut [u32]),
+        ) -> usize {
+            sift_eight(self.0, [enter, leave], words, turn, to)
+        }
+    }
 }
 vectors! {
     /// Sixteen lanes: a register of AVX-512, or two of AVX2.
@@ -252,4 +272,31 @@ fn gather_eight<S: Simd>(simd: S, rows: &[[f32; 4]], at: &[u32; MOST], from: usi
     let [a, b, c, d] = gather_four(simd, rows, at, from);
     let [e, f, g, h] = gather_four(simd, rows, at, from + 4);
     [a.combine(e), b.combine(f), c.combine(g), d.combine(h)]
+}
+
+/// As [`Lanes::sift`], without branches: the lanes are put in order, and then moved together.
+#[inline(always)]
+fn sift_eight<S: Simd>(
+    simd: S,
+    [enter, leave]: [f32x8<S>; 2],
+    words: u32x8<S>,
+    turn: u32,
+    (enters, to): (&mut [f32], &mut [u32]),
+) -> usize {
+    const BYTES: [u8; 32] = {
+        let mut order = [0; 32];
+        let mut i = 0;
+        while i < 32 {
+            order[i] = i as u8;
+            i += 1;
+        }
+        order
+    };
+    let swap = u32x8::splat(simd, (7 ^ (turn & 7)) * 0x0404_0404);
+    let order: u8x32<S> = (u8x32::simd_from(simd, BYTES).bitcast::<u32x8<S>>() ^ swap).bitcast();
+    let (enter, leave) = (enter.swizzle_dyn(order), leave.swizzle_dyn(order));
+    let some = enter.simd_le(leave);
+    enter.compress(some).store_slice(&mut enters[..8]);
+    words.swizzle_dyn(order).compress(some).store_slice(&mut to[..8]);
+    some.to_bitmask().count_ones() as usize
 }

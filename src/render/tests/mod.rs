@@ -8,6 +8,7 @@ mod caustics;
 mod determinism;
 mod glass;
 mod lights;
+mod many;
 mod meshes;
 mod numbers;
 mod reference;
