@@ -73,9 +73,9 @@ pub fn missed<L: Lanes>(l: L, beams: &Beams<L>, to: V<L>, far: L::M) -> Missed<L
     let (x, y) = basis(l, V::pick(far, to, d));
     let off = V::pick(far, d, o + d * distance - to);
     let mut moved = [[distance; 2]; 2];
-    for i in 0..2 {
-        let change = V::pick(far, beams.dd[i], beams.dp[i] + beams.dd[i] * distance);
-        moved[i] = [x.dot(change), y.dot(change)];
+    for (moved, (dp, dd)) in moved.iter_mut().zip(beams.dp.into_iter().zip(beams.dd)) {
+        let change = V::pick(far, dd, dp + dd * distance);
+        *moved = [x.dot(change), y.dot(change)];
     }
     ([x.dot(off), y.dot(off)], moved, far.pick(to.dot(d), distance))
 }

@@ -148,8 +148,8 @@ impl Seeds {
     /// The cell around a point.
     #[inline]
     pub fn around(&self, p: [f32; 3]) -> Option<Cell> {
-        for i in 0..3 {
-            if !(self.low[i] <= p[i] && p[i] <= self.high[i]) {
+        for ((low, high), p) in self.low.into_iter().zip(self.high).zip(p) {
+            if !(low <= p && p <= high) {
                 return None;
             }
         }

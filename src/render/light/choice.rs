@@ -37,8 +37,7 @@ impl Choice {
         if places.len() <= FEW {
             return Choice { asked: all.collect(), groups: Vec::new(), group_of };
         }
-        let groups: Vec<LightTree> =
-            grouped(places, GROUPS).into_iter().map(|group| LightTree::new(group)).collect();
+        let groups: Vec<LightTree> = grouped(places, GROUPS).into_iter().map(LightTree::new).collect();
         for (index, group) in (0..).zip(&groups) {
             for lamp in group.lamps() {
                 group_of[lamp as usize] = Some(index);
