@@ -44,7 +44,7 @@ pub(super) struct Cut<'t> {
     pub(super) comments: Vec<Comment>,
     /// What was wrong between the items and with their brackets.
     pub(super) sink: Sink,
-    /// Closers outside all brackets.
+    /// Closers outside all brackets, in order.
     pub(super) strays: Vec<Stray>,
 }
 
@@ -52,6 +52,8 @@ pub(super) struct Cut<'t> {
 pub(super) struct Stray {
     pub(super) span: Span,
     pub(super) closer: char,
+    /// Whether it is overlooked, since it closes what was reported as unclosed.
+    pub(super) forgiven: bool,
 }
 
 /// What stands between two separators outside all brackets.
@@ -135,6 +137,17 @@ impl Level {
     }
 }
 
+/// How much was found before an item, which may have to be read once more.
+#[derive(Default)]
+struct Before {
+    told: errors::Held,
+    comments: usize,
+    strays: usize,
+    foreign_comments: usize,
+    /// Closers to overlook outside all brackets.
+    forgiven: usize,
+}
+
 /// White space and comments between two tokens.
 struct Gap {
     start: usize,
@@ -177,8 +190,8 @@ struct Cutter<'t> {
     /// Whether layout may end an item.
     layout: bool,
     rescans: usize,
-    /// How many diagnostics and comments there were before the item.
-    before_item: (errors::Held, usize),
+    /// What was found before the item.
+    before: Before,
     ended_in_comment: bool,
     /// Where comments begin as in other languages.
     foreign_comments: Vec<Span>,
@@ -214,7 +227,7 @@ impl<'t> Cutter<'t> {
             beyond: 0,
             layout: false,
             rescans: 0,
-            before_item: Default::default(),
+            before: Before::default(),
             ended_in_comment: false,
             foreign_comments: vec![],
         }

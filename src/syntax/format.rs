@@ -60,7 +60,8 @@ fn broken(file: &File, text: &str, slips: &[Diagnostic]) -> Vec<Range<usize>> {
         return vec![];
     }
     let written = lookalikes::read(file.source, text, &mut Sink::default());
-    let items: Vec<Range<usize>> = cut::cut(file.source, &written.text, Limits::default().depth)
+    let cut = cut::cut(file.source, &written.text, Limits::default().depth);
+    let items: Vec<Range<usize>> = cut
         .items
         .iter()
         .map(|item| {
@@ -77,6 +78,8 @@ fn broken(file: &File, text: &str, slips: &[Diagnostic]) -> Vec<Range<usize>> {
             let edits: Vec<Span> = edits(slip);
             slip.labels.iter().chain([&slip.primary]).map(|label| label.span).chain(edits)
         })
+        // A closer that is overlooked is part of the slip that its opener is.
+        .chain(cut.strays.iter().map(|stray| stray.span))
         .map(Span::range)
         .collect();
     places.sort_by_key(|place| place.start);

@@ -101,7 +101,7 @@ pub fn parse_rows(source: SourceId, text: &str, limits: Limits) -> (ast::File, V
 
 /// Reports closers without an opener. Behind a thing whose `{` is missing, that is the slip.
 fn strays(entries: &[ast::Entry], strays: &[cut::Stray], sink: &mut errors::Sink) {
-    for stray in strays {
+    for stray in strays.iter().filter(|stray| !stray.forgiven) {
         let place = stray.span.start;
         let before = entries.partition_point(|entry| entry.start() < place);
         let lost = entries[..before].iter().rev().find(|entry| !matches!(entry, ast::Entry::Field(_)));

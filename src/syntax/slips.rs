@@ -5,7 +5,7 @@ use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements};
 use super::value;
 use crate::span::Span;
-use pest::iterators::{Pair, Pairs};
+use pest::iterators::Pairs;
 
 /// Whether a complaint about the end of an entry explains what follows on its line.
 pub(super) fn ends_invalid(entry: &Entry) -> bool {
@@ -80,13 +80,16 @@ impl<'t> Builder<'t> {
         (Entry::Field(Field { name, value }), depth)
     }
 
-    /// `sphere: { radius: 1m }`, `sphere = { radius: 1m }` at the top level.
+    /// `sphere: { radius: 1m }`, `sphere = { radius: 1m }` at the top level. The value begins with the body.
     fn signed_body(&self, kind: Name, sign: &str, value: Node<'t>, span: Span) -> Deep<Entry> {
         let opener = self.span(&value).before();
         let edit = Span { start: kind.span.end, ..opener };
         self.report(errors::sign_before_body(&kind.text, sign, edit));
-        let bodies = value.into_inner().flat_map(Pair::into_inner);
-        let Some(body) = bodies.last() else { return (Entry::Broken(Broken { name: None, span }), 0) };
+        let mut parts = value.into_inner();
+        let body = parts.next().and_then(|bare| bare.into_inner().next()).expect("the value begins with a body");
+        if let Some(extra) = parts.next() {
+            self.unexpected(&extra, errors::unexpected_extra);
+        }
         match self.construct(vec![kind], body) {
             (Some(construct), depth) => {
                 let thing = StatementKind::Thing { name: None, construct };

@@ -142,17 +142,19 @@ impl Cutter<'_> {
     pub(super) fn stray_closer(&mut self) {
         let start = self.at;
         let closer = self.bytes[start];
-        if self.base.forgiven > 0 {
+        // Only parentheses are left unclosed behind which an item ends.
+        let forgiven = self.base.forgiven > 0 && closer != b'}';
+        if forgiven {
             self.base.forgiven -= 1;
             self.at += 1;
-            return;
+        } else {
+            // A run of them is one slip.
+            while self.byte(self.at) == closer {
+                self.at += 1;
+            }
         }
-        // A run of them is one slip.
-        while self.byte(self.at) == closer {
-            self.at += 1;
-        }
-        let place = self.span(start, self.at);
-        self.out.strays.push(Stray { span: place, closer: char::from(closer) });
+        let span = self.span(start, self.at);
+        self.out.strays.push(Stray { span, closer: char::from(closer), forgiven });
         if self.item.is_some() {
             self.edits.push((start..self.at, b' '));
         }

@@ -1,14 +1,20 @@
 //! Where items begin and end, and their text as the grammar reads it.
 
-use super::{BLOT, Cutter, Item, Last, Level, MAX_RESCANS};
+use super::{BLOT, Before, Cutter, Item, Last, Level, MAX_RESCANS};
 use crate::span::Span;
 use std::borrow::Cow;
 
 impl<'t> Cutter<'t> {
     pub(super) fn begin(&mut self, start: usize) {
         self.item = Some(start);
-        self.before_item = (self.out.sink.held(), self.out.comments.len());
         let forgiven = self.base.forgiven;
+        self.before = Before {
+            told: self.out.sink.held(),
+            comments: self.out.comments.len(),
+            strays: self.out.strays.len(),
+            foreign_comments: self.foreign_comments.len(),
+            forgiven,
+        };
         self.base = Level { forgiven, ..Level::new(0, start, self.indent) };
         self.end = start;
         self.skipped = false;
@@ -73,10 +79,11 @@ impl<'t> Cutter<'t> {
         let start = self.item.unwrap_or(self.at);
         self.rescans += 1;
         self.layout = true;
-        self.out.sink.truncate(self.before_item.0);
-        self.out.comments.truncate(self.before_item.1);
-        self.out.strays.retain(|stray| (stray.span.start as usize) < start);
-        self.foreign_comments.retain(|comment| (comment.start as usize) < start);
+        self.out.sink.truncate(self.before.told);
+        self.out.comments.truncate(self.before.comments);
+        self.out.strays.truncate(self.before.strays);
+        self.foreign_comments.truncate(self.before.foreign_comments);
+        self.base.forgiven = self.before.forgiven;
         self.edits.clear();
         self.levels.clear();
         (self.open, self.beyond) = ([0; 3], 0);
