@@ -86,7 +86,8 @@ impl<'t> Builder<'t> {
         let edit = Span { start: kind.span.end, ..opener };
         self.report(errors::sign_before_body(&kind.text, sign, edit));
         let mut parts = value.into_inner();
-        let body = parts.next().and_then(|bare| bare.into_inner().next()).expect("the value begins with a body");
+        let body =
+            parts.next().and_then(|bare| bare.into_inner().next()).expect("the value begins with a body");
         if let Some(extra) = parts.next() {
             self.unexpected(&extra, errors::unexpected_extra);
         }
