@@ -23,8 +23,8 @@ pub fn parse(text: &str) {
     dump::diagnostics(text, &slips);
 }
 
-/// Laid out again, a text is the same; its comments and its tree are those of the text before; and what has a slip
-/// still has it.
+/// Laid out again, a text is the same; its comments and its tree are those of the text before; what has a slip
+/// still has it; and nothing is lost.
 pub fn fmt(text: &str) {
     let (formatted, slips) = syntax::format(SOURCE, text);
     let (before, _) = syntax::parse(SOURCE, text);
@@ -33,6 +33,7 @@ pub fn fmt(text: &str) {
     assert_eq!(comments(text, &before), comments(&formatted, &after), "comments\n{text}\n---\n{formatted}");
     let (shape, again) = (dump::shape(text, &before), dump::shape(&formatted, &after));
     assert_eq!(shape, again, "tree\n{text}\n---\n{formatted}");
+    assert_eq!(signs(text), signs(&formatted), "signs\n{text}\n---\n{formatted}");
     assert_eq!(syntax::format(SOURCE, &formatted).0, formatted, "again\n{text}");
 }
 
@@ -54,4 +55,12 @@ fn said(slips: &[Diagnostic]) -> Vec<String> {
 
 fn comments(text: &str, file: &File) -> Vec<String> {
     file.comments.iter().map(|comment| text[comment.span.range()].trim_end().to_string()).collect()
+}
+
+/// What no layout adds or takes away, in an order that does not depend on where comments stand.
+fn signs(text: &str) -> Vec<char> {
+    let mut signs: Vec<char> =
+        text.chars().filter(|&c| !c.is_whitespace() && !matches!(c, ',' | '\u{feff}')).collect();
+    signs.sort_unstable();
+    signs
 }

@@ -1,7 +1,7 @@
 //! The formatter: the cases of `cases/format`, and what must hold for any text.
 
 use crate::invariants;
-use crate::parse::{case_files, mutated, pieces};
+use crate::parse::{case_files, mutated, pieces, spliced};
 use proptest::prelude::*;
 use rt_lang::span::SourceId;
 use rt_lang::syntax::format;
@@ -208,6 +208,11 @@ proptest! {
 
     #[test]
     fn mutated_cases_keep_their_meaning(text in mutated()) {
+        check(&text);
+    }
+
+    #[test]
+    fn spliced_cases_keep_their_meaning(text in spliced()) {
         check(&text);
     }
 }

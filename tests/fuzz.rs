@@ -4,7 +4,7 @@ use crate::invariants;
 use std::path::Path;
 
 /// Texts of a folder, at most so long: a bounded replay.
-fn texts(folder: &str) -> Vec<String> {
+pub fn texts(folder: &str) -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| path.is_file() && path.extension().is_none_or(|extension| extension == "rt"));

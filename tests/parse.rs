@@ -1,6 +1,7 @@
 //! Text to tree: the cases of `cases/syntax`, and what must hold for any text.
 
 use crate::dump;
+use crate::fuzz::texts;
 use proptest::prelude::*;
 use rt_lang::diagnostic::{Code, Diagnostic};
 use rt_lang::span::SourceId;
@@ -327,6 +328,28 @@ pub fn mutated() -> impl Strategy<Value = String> {
     })
 }
 
+/// Stretches of several cases one behind the other, with brackets and what is no text strewn in.
+pub fn spliced() -> impl Strategy<Value = String> {
+    let cases = texts("tests/cases/diagnostics");
+    let stretch = (prop::sample::select(cases), any::<prop::sample::Index>(), 0..100_usize);
+    let sign = prop::sample::select(vec![
+        "(", ")", "[", "]", "{", "}", "<", "\n}", "}\n", ")\n", ":{", "\n", "\"", "/*", ";", "#", "@",
+        "\u{1}", "\0", "\u{7f}", "\u{b}", "\r", "（", "）", "“", "\u{a0}", "\u{2028}",
+    ]);
+    let strewn = prop::collection::vec((any::<prop::sample::Index>(), sign), 0..8);
+    (prop::collection::vec(stretch, 1..4), strewn).prop_map(|(stretches, strewn)| {
+        let mut text: Vec<char> = vec![];
+        for (case, at, length) in stretches {
+            text.extend(case.chars().skip(at.index(case.len() + 1)).take(length));
+        }
+        for (at, sign) in strewn {
+            let at = at.index(text.len() + 1);
+            text.splice(at..at, sign.chars());
+        }
+        text.into_iter().collect()
+    })
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -347,6 +370,11 @@ proptest! {
 
     #[test]
     fn mutated_cases_are_read(text in mutated()) {
+        check_places(&text);
+    }
+
+    #[test]
+    fn spliced_cases_are_read(text in spliced()) {
         check_places(&text);
     }
 }

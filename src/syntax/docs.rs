@@ -1,5 +1,6 @@
 //! Doc comments: which belong to a statement.
 
+use super::BLANKS;
 use super::ast::Comment;
 use super::build::Source;
 use crate::span::Span;
@@ -39,7 +40,7 @@ pub(super) fn any(source: &Source, start: usize) -> bool {
 /// The words of a doc comment; none where it is another comment.
 fn line(text: &str, span: Span) -> Option<&str> {
     let words = text[span.range()].strip_prefix("///").filter(|words| !words.starts_with('/'))?;
-    let before = text[..span.start as usize].trim_end_matches([' ', '\t', '\r']);
+    let before = text[..span.start as usize].trim_end_matches(BLANKS);
     let alone = before.is_empty() || before.ends_with(['\n', '\u{feff}']);
     alone.then(|| words.strip_prefix(' ').unwrap_or(words).trim_end())
 }

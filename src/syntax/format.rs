@@ -79,7 +79,7 @@ fn broken(file: &File, text: &str, slips: &[Diagnostic]) -> Vec<Range<usize>> {
             slip.labels.iter().chain([&slip.primary]).map(|label| label.span).chain(edits)
         })
         // A closer that is overlooked is part of the slip that its opener is.
-        .chain(cut.strays.iter().map(|stray| stray.span))
+        .chain(cut.strays.iter().map(|stray| written.whole(stray.span, text)))
         .map(Span::range)
         .collect();
     places.sort_by_key(|place| place.start);

@@ -34,6 +34,9 @@ pub const RESERVED: &[&str] = &[
     "if", "then", "else", "fn", "to", "assert",
 ];
 
+/// White space within a line, as the grammar has it. With the line end it is what Rust calls ASCII white space.
+const BLANKS: [char; 4] = [' ', '\t', '\r', '\u{c}'];
+
 /// How much a text may ask for. Going over one is an error at the place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {

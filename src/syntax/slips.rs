@@ -1,5 +1,6 @@
 //! Entries with a slip in their form: what is said of them, and what is still understood.
 
+use super::BLANKS;
 use super::ast::{Broken, Entry, Expr, ExprKind, Field, Name, StatementKind};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements};
@@ -217,7 +218,7 @@ impl<'t> Builder<'t> {
 
     /// `;` where a comma or nothing should stand.
     pub(super) fn semicolon(&self, pair: &Node) {
-        let rest = self.after(pair.as_span().end()).trim_start_matches([' ', '\t', '\r']);
+        let rest = self.after(pair.as_span().end()).trim_start_matches(BLANKS);
         let ends = if rest.is_empty() { !self.continued() } else { rest.starts_with(['\n', '}', ',', ')']) };
         let replacement = if ends { "" } else { "," };
         self.sink.borrow_mut().push_semicolon(self.span(pair), replacement);
@@ -226,7 +227,7 @@ impl<'t> Builder<'t> {
     pub(super) fn crowded(&self, pair: &Node) {
         let start = pair.as_span().start();
         let rest = self.after(start);
-        let skipped = rest.len() - rest.trim_start_matches([' ', '\t', '\r']).len();
+        let skipped = rest.len() - rest.trim_start_matches(BLANKS).len();
         let word = errors::first_token(&rest[skipped..]);
         let start = start + skipped;
         self.report(errors::crowded(word, self.at(start, start + word.len())));

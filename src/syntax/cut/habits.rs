@@ -17,7 +17,7 @@ impl Cutter<'_> {
         let next = self.byte(self.at + 1);
         match self.bytes[self.at] {
             b'#' => {
-                let blank = matches!(next, b' ' | b'\t' | b'#' | b'!');
+                let blank = matches!(next, b' ' | b'\t' | b'\x0c' | b'#' | b'!');
                 entry || blank && self.last == Last::Operand && self.splits
             }
             _ => entry && next == b'-',

@@ -1,5 +1,6 @@
 //! Where items begin and end, and their text as the grammar reads it.
 
+use super::super::BLANKS;
 use super::{BLOT, Before, Cutter, Item, Last, Level, MAX_RESCANS};
 use crate::span::Span;
 use std::borrow::Cow;
@@ -52,7 +53,7 @@ impl<'t> Cutter<'t> {
 
     /// Whether the item ends with `;` and the line goes on.
     pub(super) fn continues(&self) -> bool {
-        let rest = self.text[self.end..].trim_start_matches([' ', '\t', '\r']);
+        let rest = self.text[self.end..].trim_start_matches(BLANKS);
         self.bytes[self.end - 1] == b';'
             && !rest.is_empty()
             && !rest.starts_with(['\n', ','])

@@ -12,7 +12,7 @@ impl<'t> Cutter<'t> {
         let mut line = None;
         while let Some(&byte) = self.bytes.get(self.at) {
             match byte {
-                b' ' | b'\t' | b'\r' => self.at += 1,
+                b' ' | b'\t' | b'\r' | b'\x0c' => self.at += 1,
                 b'\n' => {
                     gap.first_newline.get_or_insert(self.at);
                     line = Some(self.at + 1);
@@ -132,7 +132,7 @@ impl<'t> Cutter<'t> {
         let word = self.word(at);
         let begins = word.bytes().next().is_some_and(|byte| !byte.is_ascii_digit());
         let rest = &self.bytes[at + word.len()..];
-        let blank = rest.iter().take_while(|byte| matches!(byte, b' ' | b'\t')).count();
+        let blank = rest.iter().take_while(|byte| matches!(byte, b' ' | b'\t' | b'\x0c')).count();
         begins.then_some((word, at + word.len() + blank))
     }
 

@@ -29,6 +29,7 @@ fn items_end_at_newlines_and_commas() {
     assert_eq!(items("let a = 1; let b = 2"), ["let a = 1;", "let b = 2"]);
     assert_eq!(codes("a {}, , b {}"), [Code::E0001]);
     assert_eq!(codes("a {}\n, b {}"), []);
+    assert_eq!(items("a {}\u{c}\n\u{c}b {}\r\n"), ["a {}", "b {}"]);
 }
 
 #[test]
@@ -66,6 +67,17 @@ fn missing_closers_stand_in_white_space() {
     assert_eq!(items("a {\n  b: (1\n  c: 2\n}"), ["a {\n  b: (1) \nc: 2\n}"]);
     assert_eq!(items("a { b: (1] }"), ["a { b: (1) }"]);
     assert_eq!(codes("a { b: (1] }"), [Code::E0002]);
+}
+
+#[test]
+fn a_closer_of_what_was_left_open_is_overlooked_once() {
+    let strays =
+        |text| cut(SourceId(0), text, 512).strays.iter().map(|stray| stray.forgiven).collect::<Vec<_>>();
+    assert_eq!(items("let a = (1\nlet b = 2) + 3"), ["let a = (1", "let b = 2  + 3"]);
+    assert_eq!(strays("let a = (1\nlet b = 2)\n)"), [true, false]);
+    assert_eq!(strays("let a = (1\nlet b = 2\n}"), [false]);
+    // Also where the item is read once more, for the sake of its brace.
+    assert_eq!(strays("let a = (1\nlet b = 2) * c {\n"), [true]);
 }
 
 #[test]

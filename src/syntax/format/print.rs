@@ -5,6 +5,7 @@
 
 mod value;
 
+use super::super::BLANKS;
 use super::super::ast::{
     Argument, BinaryOp, Body, Comment, Construct, Entry, Expr, ExprKind, Name, Parameter, Path, Prefix,
     Statement, StatementKind, TypeName, UnaryOp,
@@ -101,7 +102,7 @@ impl<'t> Printer<'t> {
     /// Whether nothing but comments, or what closes a bracket, follows on the line.
     fn ends_line(&self, mut offset: usize) -> bool {
         loop {
-            let rest = self.text[offset..].trim_start_matches([' ', '\t', '\r']);
+            let rest = self.text[offset..].trim_start_matches(BLANKS);
             let Some(length) = rest.strip_prefix("/*").and_then(|rest| rest.find("*/")) else {
                 return rest.is_empty() || rest.starts_with(['\n', '}']) || rest.starts_with("//");
             };
@@ -113,7 +114,7 @@ impl<'t> Printer<'t> {
     fn lead(&mut self, offset: usize, out: &mut Docs<'t>) {
         while let Some((comment, range)) = self.next_before(offset) {
             self.printed += 1;
-            let before = self.text[..range.start].trim_end_matches([' ', '\t', '\r']);
+            let before = self.text[..range.start].trim_end_matches(BLANKS);
             if before.ends_with('\n') {
                 out.push(Doc::Hard);
             }
