@@ -135,9 +135,16 @@ impl Checker<'_> {
             let values = values.into_iter().zip(types).collect();
             return self.texture(function, parameters, arguments, values, span);
         }
+        if types.contains(&Type::Invalid) {
+            return (ExprKind::Invalid, Type::Invalid);
+        }
         if function == Function::Turn && arguments.len() > 1 {
-            let diagnostic = errors::turn_axes(&self.turns(arguments), span);
-            self.report(diagnostic);
+            // What else stands there, such as a vector as the axis, cannot be told apart into angles.
+            let angle = Type::Scalar(Element::Quantity(ANGLE));
+            let angles =
+                arguments.len() <= 3 && types.iter().all(|ty| *ty == angle || *ty == Type::Scalar(NUMBER));
+            let turns = if angles { self.turns(arguments) } else { Vec::new() };
+            self.report(errors::turn_axes(&turns, span));
             return (ExprKind::Invalid, Type::Invalid);
         }
         let axis = match self.argument_names(function, arguments) {
@@ -147,9 +154,6 @@ impl Checker<'_> {
                 return (ExprKind::Invalid, Type::Invalid);
             }
         };
-        if types.contains(&Type::Invalid) {
-            return (ExprKind::Invalid, Type::Invalid);
-        }
         let Some(ty) = self.returns(function, span, &values, &types) else {
             return (ExprKind::Invalid, Type::Invalid);
         };

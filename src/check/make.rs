@@ -381,7 +381,7 @@ impl Checker<'_> {
             return Expr::invalid(value.span);
         }
         if !accepts(field.ty, &ty) {
-            let named = self.quoted(value).filter(|(_, ty)| accepts(field.ty, ty));
+            let named = self.quoted(value).filter(|(_, ty)| *ty != Type::Invalid && accepts(field.ty, ty));
             let text = self.text(value.span);
             let diagnostic = errors::mismatch(field.name, field.ty, value.span, text, &ty);
             self.report(match named {

@@ -457,7 +457,7 @@ impl<L: Lanes> Paths<L> {
         let zero = l.f(0.0);
         let lights = &tracer.lights;
         let receivers = &self.last;
-        let [choice, _] =
+        let choice =
             if lights.needs_choice() { self.sampler.pair(l, Pair::Choice, self.bounces) } else { [zero; 2] };
         let chosen = lights.choose(l, receivers, self.last_total, choice, rough);
         let light = lights.sample(l, tracer, receivers, &chosen, u, rough);

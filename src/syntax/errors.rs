@@ -398,7 +398,19 @@ pub(super) fn type_in_definition(keyword: &str, name: &str, ty: Span, edit: Span
 
 /// `radius: 5cm;`: each `;` of a text, and what should stand there.
 fn semicolons(places: &[(Span, &'static str)]) -> Option<Diagnostic> {
-    let first = places.iter().map(|(place, _)| *place).min()?;
+    let mut places = places.to_vec();
+    places.sort_unstable();
+    let first = places.first()?.0;
+    // Those that touch, as in `;;`, are one edit: the last tells what should stand there.
+    let mut edits: Vec<(Span, &str)> = Vec::new();
+    for &(place, replacement) in &places {
+        match edits.last_mut() {
+            Some((last, with)) if last.source == place.source && last.end == place.start => {
+                (last.end, *with) = (place.end, replacement);
+            }
+            _ => edits.push((place, replacement)),
+        }
+    }
     let commas = places.iter().filter(|(_, replacement)| *replacement == ",").count();
     let help = match (places.len() - commas, commas) {
         (_, 0) => "delete it: the end of a line is enough",
@@ -407,13 +419,14 @@ fn semicolons(places: &[(Span, &'static str)]) -> Option<Diagnostic> {
     };
     let label = match places.len() - 1 {
         0 => "not a separator".to_string(),
+        n if n + 1 == MAX_SEMICOLONS => format!("not a separator, here and in more than {n} places"),
         n => format!("not a separator, here and in {n} more {}", if n == 1 { "place" } else { "places" }),
     };
     let diagnostic = Diagnostic::new(Code::E0003, "`;` does not separate", first).at(label).help(help);
     Some(
-        places
-            .iter()
-            .fold(diagnostic, |diagnostic, (place, replacement)| diagnostic.fix(*place, *replacement)),
+        edits
+            .into_iter()
+            .fold(diagnostic, |diagnostic, (place, replacement)| diagnostic.fix(place, replacement)),
     )
 }
 

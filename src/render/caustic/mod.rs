@@ -162,7 +162,8 @@ const COST: f32 = 10.0;
 ///
 /// With m hoped for and σ the noise of all else, looks with probability q beside luck with probability p have the variance
 /// σ² + m²/(q + p), and cost 1 + `COST` q. The product is least for q = m/σ √((1 − `COST` p)/`COST`) − p; luck is the
-/// hemisphere's share that shows the lamps by way of the chains, weighted by the cosine.
+/// hemisphere's share that shows the lamps by way of the chains, weighted by the cosine. σ is taken for 0.63 of all light
+/// that comes, hoped for or direct, which makes the factor `EFFORT`.
 fn effort(lights: &Lights, goals: &[Goal], p: [f32; 3], seeds: &[Seed]) -> f32 {
     let (mut hoped, mut luck) = (0.0, 0.0);
     for seed in seeds {
@@ -173,7 +174,7 @@ fn effort(lights: &Lights, goals: &[Goal], p: [f32; 3], seeds: &[Seed]) -> f32 {
         return 0.0;
     }
     let p = V::splat(One, p);
-    let direct = lights.irradiance(&Receivers { p, n: V::splat(One, [0.0, 0.0, 1.0]), open: true });
+    let direct = lights.irradiance(One, &Receivers { p, n: V::splat(One, [0.0, 0.0, 1.0]), open: true });
     let worth = (1.0 - COST * luck).max(0.0).sqrt();
     let best = EFFORT * hoped / (hoped + direct) * worth - luck;
     let least = if luck > 0.0 { LEAST_EFFORT } else { LEAST_WITHOUT_LUCK };

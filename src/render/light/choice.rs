@@ -59,7 +59,7 @@ pub struct Chosen<L: Lanes> {
     pub index: L::U,
     /// The probability of that.
     pub probability: L::F,
-    /// The number that chose, made uniform again.
+    /// A number that the choice does not depend on.
     pub rest: L::F,
 }
 
@@ -67,40 +67,44 @@ impl Lights {
     /// Sum of the estimates of what each light gives, for [`Lights::choose`] and [`Lights::chance`].
     #[inline(always)]
     pub fn total<L: Lanes>(&self, l: L, receivers: &Receivers<L>) -> L::F {
-        let mut total = l.f(0.0);
         // Between one there is no choice, and nothing to estimate.
-        if self.lamps.len() > 1 {
-            for index in &self.choice.asked {
-                total = total + self.lamp(*index).estimate(l, receivers);
-            }
-            for group in &self.choice.groups {
-                total = total + group.estimate(l, receivers);
-            }
+        if self.lamps.len() > 1 { self.irradiance(l, receivers) } else { l.f(0.0) }
+    }
+
+    /// About the irradiance at receivers, were nothing in between.
+    #[inline(always)]
+    pub fn irradiance<L: Lanes>(&self, l: L, receivers: &Receivers<L>) -> L::F {
+        let mut total = l.f(0.0);
+        for index in &self.choice.asked {
+            total = total + self.lamp(*index).estimate(l, receivers);
+        }
+        for group in &self.choice.groups {
+            total = total + group.estimate(l, receivers);
         }
         total
     }
 
-    /// Chooses lights by a number each: one in ten blindly, the others in proportion to what they may give.
+    /// Chooses lights: one in ten blindly, by the second of two numbers, the others in proportion to what they may give,
+    /// by the first. What does not choose is left for further use.
     #[inline(always)]
     pub fn choose<L: Lanes>(
         &self,
         l: L,
         receivers: &Receivers<L>,
         total: L::F,
-        u: L::F,
+        [u, v]: [L::F; 2],
         wanted: L::M,
     ) -> Chosen<L> {
         let (zero, one) = (l.f(0.0), l.f(1.0));
         if self.lamps.len() == 1 {
-            return Chosen { index: l.u(0), probability: one, rest: u };
+            return Chosen { index: l.u(0), probability: one, rest: v };
         }
         let number = self.lamps.len() as f32;
         let guided = zero.lt(total);
         let blind = !guided | u.lt(l.f(UNIFORM));
-        let among = guided.pick(u * (1.0 / UNIFORM), u) * number;
-        let blindly = among.lesser(l.f(number - 1.0)).whole();
+        let blindly = (v * number).lesser(l.f(number - 1.0)).whole();
         let mut index = blindly;
-        let mut rest = among - blindly.count();
+        let rest = blind.pick(guided.pick(u * (1.0 / UNIFORM), u), v);
         // Of those that are not blind, the part of the number that is left.
         let mut left = (u - UNIFORM) * (1.0 / (1.0 - UNIFORM));
         let mut share = zero;
@@ -109,18 +113,17 @@ impl Lights {
             let here = self.lamp(at).estimate(l, receivers) / total;
             let takes = open & left.lt(here);
             index = takes.pick_word(l.u(at), index);
-            rest = takes.pick(left / here, rest);
             share = (takes | (blind & blindly.is(l.u(at)))).pick(here, share);
             left = left - here;
             open = open & !takes;
         }
-        let mut group = l.u(NO_GROUP);
+        let (mut group, mut within) = (l.u(NO_GROUP), zero);
         for (at, tree) in (0..).zip(&self.choice.groups) {
             let here = tree.estimate(l, receivers) / total;
             let last = at as usize + 1 == self.choice.groups.len();
             let takes = if last { open } else { open & left.lt(here) };
             group = takes.pick_word(l.u(at), group);
-            rest = takes.pick(left / here, rest);
+            within = takes.pick(left / here, within);
             share = takes.pick(here, share);
             left = left - here;
             open = open & !takes;
@@ -129,9 +132,8 @@ impl Lights {
             for lane in wanted.lanes() {
                 let receiver = receivers.lane(lane);
                 if let Some(tree) = self.choice.groups.get(group.get(lane) as usize) {
-                    let drawn = tree.choose(&self.lamps, &receiver, rest.get(lane));
+                    let drawn = tree.choose(&self.lamps, &receiver, within.get(lane));
                     index.set(lane, drawn.lamp);
-                    rest.set(lane, drawn.rest);
                     share.set(lane, share.get(lane) * drawn.probability);
                 } else if let Some(tree) = self.choice.group(index.get(lane)) {
                     let among = tree.chance(&self.lamps, &receiver, index.get(lane));
@@ -144,7 +146,7 @@ impl Lights {
             share = open.pick(self.lamp(last).estimate(l, receivers) / total, share);
         }
         let probability = guided.pick(share * (1.0 - UNIFORM) + UNIFORM / number, l.f(1.0 / number));
-        Chosen { index, probability, rest: rest.greater(zero).lesser(l.f(1.0 - f32::EPSILON)) }
+        Chosen { index, probability, rest }
     }
 
     /// The probability with which a lamp is chosen.

@@ -154,8 +154,6 @@ impl Cone {
     }
 }
 
-/// Lamps that are asked at most for what all of them may give.
-const ASKED: usize = 256;
 /// No slot.
 const NO_SLOT: u32 = u32::MAX;
 
@@ -213,14 +211,6 @@ impl Lights {
     pub fn goals(&self) -> Vec<Goal> {
         let goals = (0..).zip(&self.lamps).filter_map(|(index, lamp)| lamp.goal(index));
         goals.filter(|goal| goal.strength > 0.0 && goal.strength < f32::INFINITY).collect()
-    }
-
-    /// About the irradiance at a receiver, were nothing in between.
-    pub fn irradiance(&self, receiver: &Receivers<One>) -> f32 {
-        // Of many lamps some stand for all.
-        let step = self.lamps.len().div_ceil(ASKED).max(1);
-        let some: f32 = self.lamps.iter().step_by(step).map(|lamp| lamp.estimate(One, receiver)).sum();
-        some * step as f32
     }
 
     /// Whether there is more than one, or one of several parts.

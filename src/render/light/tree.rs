@@ -1,7 +1,7 @@
 //! Which of many lights, chosen by what each may give: trees whose nodes bound the lights below them.
 //!
-//! At every node one of the two children is chosen in proportion to the greatest irradiance that its lights together may
-//! give at the receiver (Alejandro Conty Estevez and Christopher Kulla, "Importance sampling of many lights with adaptive
+//! At every node one of the two children is chosen in proportion to about the irradiance that its lights together give at
+//! the receiver, were they all in its middle: nothing only where all of them are below the horizon (Alejandro Conty Estevez and Christopher Kulla, "Importance sampling of many lights with adaptive
 //! tree splitting", 2018, without cones of orientation). So the cost grows with the logarithm of their number, and none
 //! that may give light is left out.
 
@@ -34,8 +34,6 @@ pub(super) struct Drawn {
     pub lamp: u32,
     /// Its probability among those of the tree.
     pub probability: f32,
-    /// The number, made uniform again.
-    pub rest: f32,
 }
 
 struct Node {
@@ -103,7 +101,7 @@ impl LightTree {
         let mut at = 0;
         loop {
             match self.nodes[at].below {
-                Below::Lamp(lamp) => return Drawn { lamp, probability, rest: u as f32 },
+                Below::Lamp(lamp) => return Drawn { lamp, probability },
                 Below::Children(right) => {
                     let left = self.left_share(lamps, receivers, at, right);
                     let share = f64::from(left);
@@ -152,23 +150,24 @@ impl LightTree {
 
 /// Parts lamps into at most so many groups that lie together, none of them empty.
 pub(super) fn grouped(places: Vec<Place>, most: usize) -> Vec<Vec<Place>> {
-    let mut groups = vec![places];
     // What a group does wrong to a vertex amidst it grows with its extent and its strength.
-    let harm = |group: &Vec<Place>| {
-        let (_, [x, y, z]) = extent(group);
+    let with_harm = |group: Vec<Place>| {
+        let (_, [x, y, z]) = extent(&group);
         let strength: f32 = group.iter().map(|place| place.strength).sum();
-        if group.len() > 1 { strength * (x * x + y * y + z * z) } else { -1.0 }
+        let harm = if group.len() > 1 { strength * (x * x + y * y + z * z) } else { -1.0 };
+        (harm, group)
     };
+    let mut groups = vec![with_harm(places)];
     while groups.len() < most {
-        let worst = (0..groups.len()).max_by(|&a, &b| harm(&groups[a]).total_cmp(&harm(&groups[b])));
-        let Some(worst) = worst.filter(|&worst| groups[worst].len() > 1) else { break };
-        let mut group = std::mem::take(&mut groups[worst]);
+        let worst = (0..groups.len()).max_by(|&a, &b| groups[a].0.total_cmp(&groups[b].0));
+        let Some(worst) = worst.filter(|&worst| groups[worst].1.len() > 1) else { break };
+        let (_, mut group) = groups.swap_remove(worst);
         let (_, size) = extent(&group);
         let middle = halved(&mut group, size).0.len();
-        groups.push(group.split_off(middle));
-        groups[worst] = group;
+        let other = group.split_off(middle);
+        groups.extend([with_harm(group), with_harm(other)]);
     }
-    groups
+    groups.into_iter().map(|(_, group)| group).collect()
 }
 
 /// The least corner of the box around lamps, and its size.

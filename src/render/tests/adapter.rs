@@ -213,6 +213,11 @@ pub struct Light {
     pub pdf: f64,
 }
 
+/// A number, and one that is as even on every interval of it: two for the choice of a lamp.
+fn twice(choice: f64) -> [f32; 2] {
+    [choice, choice * 1000.0 * 0.618_033_988_749_894_9].map(|u| (u - u.floor()) as f32)
+}
+
 impl Lamps {
     pub fn of(scene: &Scene) -> Lamps {
         Lamps { tracer: Tracer::new(Box::leak(Box::new(scene.clone()))) }
@@ -232,7 +237,7 @@ impl Lamps {
         let receiver = self.receiver(p, n);
         let lights = &self.tracer.lights;
         let total = lights.total(One, &receiver);
-        let chosen = lights.choose(One, &receiver, total, choice as f32, true);
+        let chosen = lights.choose(One, &receiver, total, twice(choice), true);
         let u = u.map(|u| u as f32);
         let light = lights.sample(One, &self.tracer, &receiver, &chosen, u, true);
         light.some.then(|| Light {
@@ -251,12 +256,12 @@ impl Lamps {
         (0..lights.len() as u32).map(|i| f64::from(lights.chance(One, i, &receiver, total))).collect()
     }
 
-    /// Chooses a lamp by a number: which, its probability, and the number made uniform again.
+    /// Chooses a lamp by a number: which, its probability, and a number for further use.
     pub fn choose(&self, p: DVec3, n: Option<DVec3>, choice: f64) -> (usize, f64, f64) {
         let receiver = self.receiver(p, n);
         let lights = &self.tracer.lights;
         let total = lights.total(One, &receiver);
-        let chosen = lights.choose(One, &receiver, total, choice as f32, true);
+        let chosen = lights.choose(One, &receiver, total, twice(choice), true);
         (chosen.index.get(0) as usize, f64::from(chosen.probability), f64::from(chosen.rest))
     }
 
