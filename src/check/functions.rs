@@ -140,9 +140,10 @@ impl Checker<'_> {
         }
         if function == Function::Turn && arguments.len() > 1 {
             // What else stands there, such as a vector as the axis, cannot be told apart into angles.
-            let angle = Type::Scalar(Element::Quantity(ANGLE));
-            let angles =
-                arguments.len() <= 3 && types.iter().all(|ty| *ty == angle || *ty == Type::Scalar(NUMBER));
+            let is_angle = |ty: &Type| {
+                matches!(ty, Type::Scalar(Element::Zero)) || *ty == Type::Scalar(Element::Quantity(ANGLE))
+            };
+            let angles = arguments.len() <= 3 && types.iter().all(is_angle);
             let turns = if angles { self.turns(arguments) } else { Vec::new() };
             self.report(errors::turn_axes(&turns, span));
             return (ExprKind::Invalid, Type::Invalid);
