@@ -191,10 +191,14 @@ impl<'s> Tracer<'s> {
         Tracer { caustics: Caustics::default(), ..self }
     }
 
-    /// Traces on certain vector instructions, or if the processor has them not on the best it has below. The picture is
-    /// the same.
+    /// Traces on certain vector instructions, photons too, or if the processor has them not on the best it has below. The
+    /// picture is the same.
     pub fn on(self, level: Level) -> Tracer<'s> {
-        Tracer { level, ..self }
+        let mut tracer = Tracer { level, ..self };
+        if !tracer.caustics.is_empty() {
+            tracer.caustics = Caustics::new(&tracer);
+        }
+        tracer
     }
 
     /// Takes a first look, for exposure and the film's scale.

@@ -27,6 +27,8 @@ pub struct Photon {
     pub ways: Ways,
     /// The lamp.
     pub goal: u32,
+    /// Which of the lamp's it is.
+    pub number: u32,
     /// Its power.
     pub power: f32,
 }
@@ -196,11 +198,9 @@ impl Emission<'_, '_> {
                 }
                 insides[lane as usize].clone_from(&start);
             }
-            let [ox, oy, oz, dx, dy, dz] = columns.map(
-                #[inline(always)]
-                |column| l.load(&column),
-            );
-            let (o, d) = (V::new(ox, oy, oz), V::new(dx, dy, dz));
+            let [ox, oy, oz, dx, dy, dz] = &columns;
+            let o = V::new(l.load(ox), l.load(oy), l.load(oz));
+            let d = V::new(l.load(dx), l.load(dy), l.load(dz));
             let rays = Rays { o, d, start: l.u(NOWHERE), detail: l.u(0) };
             let mut numbers = [0; MOST];
             for (lane, number) in numbers.iter_mut().enumerate() {
@@ -209,8 +209,10 @@ impl Emission<'_, '_> {
             let sampler =
                 Sampler::new(l, seed_key(SEED), l.u(self.batch.goal), l.u(0), l.load_words(&numbers));
             let alive = l.mask(u32::MAX >> (32 - count));
-            self.trace(l, rays, &sampler, &mut insides, alive, &mut photons);
+            self.trace(l, rays, (&sampler, first), &mut insides, alive, &mut photons);
         }
+        // They came in the order in which lanes ended.
+        photons.sort_unstable_by_key(|photon| photon.number);
         photons
     }
 
@@ -263,13 +265,13 @@ impl Emission<'_, '_> {
         (o.get(0), d.normalized(One).get(0))
     }
 
-    /// Follows photons through polished surfaces, each way as often as light goes it.
+    /// Follows photons, numbered from the first, through polished surfaces, each way as often as light goes it.
     #[inline(always)]
     fn trace<L: Lanes>(
         &self,
         l: L,
         rays: Rays<L>,
-        sampler: &Sampler<L>,
+        (sampler, first): (&Sampler<L>, u32),
         insides: &mut [Inside],
         mut alive: L::M,
         photons: &mut Vec<Photon>,
@@ -296,7 +298,8 @@ impl Emission<'_, '_> {
                 if index > 0 && power > 0.0 && power < f32::INFINITY {
                     let (p, toward) = (met.points.p.get(lane), beams.rays.o.get(lane));
                     let ways = ways[lane].reversed();
-                    photons.push(Photon { p, toward, ways, goal: self.batch.goal, power });
+                    let (goal, number) = (self.batch.goal, first + lane as u32);
+                    photons.push(Photon { p, toward, ways, goal, number, power });
                 }
             }
             alive = met.some & (glass | metal);
