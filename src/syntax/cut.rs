@@ -383,7 +383,7 @@ impl<'t> Cutter<'t> {
 
     /// `<` and `>` compare, save around a triple, where they stand for parentheses.
     fn angle(&mut self, byte: u8) -> Last {
-        let operand = self.last == Last::Operand;
+        let operand = self.last == Last::Operand && !self.behind_color_word();
         let level = self.level();
         if byte == b'<' && !operand {
             level.angled += 1;
