@@ -11,7 +11,7 @@ mod sky;
 mod texture;
 
 use crate::color::Rgb;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Use};
 use crate::eval::{Aim, Reach, Thing, ThingId, Things};
 use crate::files::{Contents, Files};
 use crate::math::{DAffine3, PI, sin};
@@ -445,8 +445,11 @@ impl<'a> Lowering<'a> {
     /// Adds the chain of uses that led to a thing, but for those whose text holds the place anyway.
     fn used_at(&self, thing: &Thing, mut diagnostic: Diagnostic) -> Diagnostic {
         let chain = self.things.origins.chain(thing.origin);
-        diagnostic.uses =
-            chain.into_iter().filter(|place| !place.contains(diagnostic.primary.span)).collect();
+        diagnostic.uses = chain
+            .into_iter()
+            .filter(|place| !place.contains(diagnostic.primary.span))
+            .map(Use::from)
+            .collect();
         diagnostic
     }
 }
