@@ -18,6 +18,16 @@ const MARGIN: f64 = 1.08;
 const UPRIGHT: f64 = 2e-15;
 
 impl Lowering<'_> {
+    /// Reports what is wrong with the cameras that do not take the picture, where they are looked at.
+    pub(super) fn other_cameras(&mut self, blocks: &Blocks, size: Option<[u32; 2]>) {
+        let chosen = self.out.notes.len();
+        for camera in &blocks.others {
+            let other = Blocks { camera: Some(camera), others: vec![], ..*blocks };
+            self.camera(&other, size);
+        }
+        self.out.notes.truncate(chosen);
+    }
+
     /// The camera, and the exposure it asks for; none where something is wrong.
     pub(super) fn camera(
         &mut self,
