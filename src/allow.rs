@@ -10,7 +10,7 @@ pub(crate) fn allow(allows: &[Allow], diagnostics: &mut Vec<Diagnostic>) -> Vec<
     let allowed = |allow: &Allow, warning: &Diagnostic| {
         let here = |span| allow.on.contains(span);
         allow.code == warning.code
-            && (here(warning.primary.span) || warning.uses.iter().any(|span| here(*span)))
+            && (here(warning.primary.span) || warning.uses.iter().any(|used| here(used.span)))
     };
     diagnostics.retain(|diagnostic| {
         let warning = diagnostic.severity() == Severity::Warning;

@@ -115,6 +115,21 @@ pub struct Fix {
     pub edits: Vec<(Span, String)>,
 }
 
+/// A use of a group, part, function or prototype, or a turn of a loop.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Use {
+    /// The statement or the call.
+    pub span: Span,
+    /// Of a turn of a loop, which one: `i = 2`.
+    pub turn: Option<String>,
+}
+
+impl From<Span> for Use {
+    fn from(span: Span) -> Use {
+        Use { span, turn: None }
+    }
+}
+
 /// One error or warning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
@@ -131,7 +146,7 @@ pub struct Diagnostic {
     /// The mend as an edit, where it can be applied blindly.
     pub fix: Option<Fix>,
     /// The uses that led to the place, outermost first.
-    pub uses: Vec<Span>,
+    pub uses: Vec<Use>,
 }
 
 impl Diagnostic {
@@ -184,7 +199,8 @@ impl Diagnostic {
     pub fn move_places(&mut self, moved: impl Fn(Span) -> Span) {
         let labels = self.labels.iter_mut().chain([&mut self.primary]).map(|label| &mut label.span);
         let edits = self.fix.iter_mut().flat_map(|fix| &mut fix.edits).map(|(span, _)| span);
-        labels.chain(edits).chain(&mut self.uses).for_each(|span| *span = moved(*span));
+        let uses = self.uses.iter_mut().map(|used| &mut used.span);
+        labels.chain(edits).chain(uses).for_each(|span| *span = moved(*span));
     }
 
     /// Error or warning.

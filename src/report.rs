@@ -9,7 +9,7 @@ mod excerpt;
 mod machine;
 mod sarif;
 
-use crate::diagnostic::{Diagnostic, Label, Severity};
+use crate::diagnostic::{Diagnostic, Label, Severity, Use};
 use crate::source::Sources;
 use crate::span::Span;
 use excerpt::Excerpt;
@@ -123,18 +123,19 @@ pub fn human(diagnostic: &Diagnostic, sources: &Sources, style: Style) -> String
 /// The most lines that a chain of uses takes; of a longer one, its ends are shown.
 const MOST_USES: usize = 8;
 
-/// The chain of uses, outermost first. The turns of one loop are one line.
-fn uses(chain: &[Span], sources: &Sources) -> String {
-    let mut runs: Vec<(Span, usize)> = vec![];
-    for &span in chain {
+/// The chain of uses, outermost first. A use within itself is one line.
+fn uses(chain: &[Use], sources: &Sources) -> String {
+    let mut runs: Vec<(&Use, usize)> = vec![];
+    for used in chain {
         match runs.last_mut() {
-            Some((last, count)) if *last == span => *count += 1,
-            _ => runs.push((span, 1)),
+            Some((last, count)) if *last == used => *count += 1,
+            _ => runs.push((used, 1)),
         }
     }
-    let line = |(span, count): &(Span, usize)| {
+    let line = |(Use { span, turn }, count): &(&Use, usize)| {
         let times = if *count > 1 { format!(", {count} levels") } else { String::new() };
-        format!("  in `{}`, {}{times}\n", head(sources.text(*span)), at(*span, sources))
+        let turn = turn.as_ref().map_or(String::new(), |turn| format!(" at `{}`", sentence(turn)));
+        format!("  in `{}`{turn}, {}{times}\n", head(sources.text(*span)), at(*span, sources))
     };
     if runs.len() <= MOST_USES {
         return runs.iter().map(line).collect();

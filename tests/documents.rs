@@ -202,6 +202,23 @@ fn every_scene_in_examples_compiles_without_a_warning() {
     assert!(found >= 10, "{found} examples were found");
 }
 
+#[test]
+fn what_is_shown_is_laid_out() {
+    let laid_out = |name: &str, text: &str| {
+        let (formatted, _) = rt_lang::syntax::format(rt_lang::span::SourceId(0), text);
+        assert_eq!(formatted, text, "{name}: `rtc fmt` lays it out otherwise");
+    };
+    let first = root().join("src/cli/init/scene.rt");
+    laid_out("the scene of `rtc init`", &std::fs::read_to_string(first).unwrap());
+    for file in documents() {
+        let text = std::fs::read_to_string(&file).unwrap();
+        for (index, block) in text.split("```rt\n").skip(1).enumerate() {
+            let block = block.split("```").next().unwrap();
+            laid_out(&format!("{} example {}", file.display(), index + 1), block);
+        }
+    }
+}
+
 /// Whatever picture an example names is there.
 struct AnyPicture;
 

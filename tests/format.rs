@@ -63,6 +63,25 @@ fn examples_are_laid_out() {
     }
 }
 
+/// Where comments may stand in a file that is fine, it stays fine.
+#[test]
+fn comments_between_tokens_stay_fine() {
+    let assertion = ["assert", "1 < 2", ",", "\"x\""];
+    let param = ["param", "a", ":", "int", "=", "1", "in", "1 to 2"];
+    let function = ["fn", "f", "(", "a", ":", "int", ")", "->", "int", "=", "a"];
+    let repeated =
+        ["for", "i", "in", "range", "(", "3", ")", "{", "sphere", "{", "radius", ":", "1m", "}", "}"];
+    for tokens in [&assertion[..], &param, &function, &repeated] {
+        for index in 1..tokens.len() {
+            let (before, behind) = tokens.split_at(index);
+            let text = format!("{} /* why */ {}\n", before.join(" "), behind.join(" "));
+            let (formatted, slips) = format(SOURCE, &text);
+            assert_eq!(slips, [], "{text}");
+            assert_eq!(format(SOURCE, &formatted), (formatted.clone(), vec![]), "{text}");
+        }
+    }
+}
+
 fn check(text: &str) {
     invariants::fmt(text);
 }

@@ -1,14 +1,16 @@
 //! Statements: the bodies of files, parts, groups and branches.
 
 use super::order::{dependencies, sort};
-use super::program::{Block, Expr, Inside, InsideId, InsideName, Statement, StatementKind};
+use super::program::{Block, Expr, Inside, InsideId, InsideName, Statement, StatementKind, Variable};
 use super::scope::{Item, Place};
 use super::types::{Element, Kind, Type};
 use super::{Checker, errors};
 use crate::schema::Category;
 use crate::syntax::ast::{self, Entry, Keyword, Name, StatementKind as Tree};
+use crate::units;
 use smol_str::SmolStr;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// What a turn of a loop counts by itself, in expressions: about as long as it takes.
 const TURN: u64 = 9;
@@ -200,11 +202,16 @@ impl<'a> Checker<'a> {
         };
         let item = if item == Type::Scalar(Element::Zero) { Type::Scalar(Element::Int) } else { item };
         let mut scope = self.scope(Place::Parameters);
+        let dim = match item {
+            Type::Scalar(element) => element.dim(),
+            _ => units::NONE,
+        };
+        let said = Arc::new(Variable { name: variable.text.clone(), dim });
         let slot = self.declare_alone(&mut scope, variable, item, true);
         self.scopes.push(scope);
         let body = self.branch(body, "for");
         self.close(None);
-        StatementKind::For { slot, list: list_found, body, cost: self.nodes - before + TURN }
+        StatementKind::For { slot, variable: said, list: list_found, body, cost: self.nodes - before + TURN }
     }
 
     /// A thing in statement position.

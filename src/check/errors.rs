@@ -12,6 +12,7 @@ pub(super) use types::*;
 pub(super) use unknown::*;
 
 use super::block::{path_span, path_text};
+use super::functions::by_name;
 use super::types::{Kind, Making, Type, describe_wanted, list};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::schema::{self, Category, Field, FieldType, KindId, Preset, familiar};
@@ -101,6 +102,7 @@ fn said_otherwise(what: &str, name: &str) -> Option<String> {
         ("name", "pi" | "PI" | "Pi") => "half a turn is `180deg`, and as a number `180deg / 1rad`".into(),
         ("name", "yes" | "on" | "True" | "TRUE") => "write `true`".into(),
         ("name", "no" | "off" | "False" | "FALSE") => "write `false`".into(),
+        ("name", _) => return undeclarable(name),
         ("function", "rotate") => "`turn` turns about one axis: `turn(y: 30deg)`".into(),
         ("function", "translate") => "`move` moves: `move(0, 1m, 0)`".into(),
         ("function", "len" | "size" | "count") => "`length(list)` is how many items it has".into(),
@@ -115,6 +117,14 @@ fn said_otherwise(what: &str, name: &str) -> Option<String> {
         ("unit", "px" | "pixel" | "pixels") => "a number of pixels has no unit".into(),
         _ => return None,
     })
+}
+
+/// How a name is used that means something already, and so cannot be declared.
+fn undeclarable(name: &str) -> Option<String> {
+    if let Some(function) = by_name(name) {
+        return Some(format!("`{name}` is a function: `{}`", function.signature()));
+    }
+    units::is_unit(name).then(|| format!("`{name}` is a unit, and touches a number: `1{name}`"))
 }
 
 /// Whether what stands behind a number is rather the rest of a size: `320x240`.

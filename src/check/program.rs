@@ -13,6 +13,7 @@ use crate::diagnostic::Code;
 use crate::span::{SourceId, Span};
 use crate::syntax::Rows;
 use crate::syntax::ast::{BinaryOp, UnaryOp};
+use crate::units::Dim;
 use smol_str::SmolStr;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -181,6 +182,15 @@ pub struct Statement {
     pub solo: bool,
 }
 
+/// The variable of a loop, as a message says it.
+#[derive(Debug, PartialEq)]
+pub struct Variable {
+    /// Its name.
+    pub name: SmolStr,
+    /// The dimension of its value, if that is a quantity.
+    pub dim: Dim,
+}
+
 /// The forms of a statement.
 #[derive(Debug)]
 pub enum StatementKind {
@@ -217,6 +227,8 @@ pub enum StatementKind {
     For {
         /// The slot of the variable.
         slot: usize,
+        /// How the variable is said in a message.
+        variable: Arc<Variable>,
         /// What is gone through.
         list: Expr,
         /// What is done with each.

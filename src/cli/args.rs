@@ -40,8 +40,8 @@ const LONG: &str = "\
 A first scene, balls.rt:
 
   camera { from: (0, 1, 4)m, look: (0, 0.5, 0)m }
-  light  { at: (2, 3, 2)m, power: 60W }
-  plane  { material: diffuse { color: #8a8f98 } }
+  light { at: (2, 3, 2)m, power: 60W }
+  plane { material: diffuse { color: #8a8f98 } }
   sphere { at: (0, 0.5, 0)m, radius: 50cm, material: diffuse { color: #d94f30 } }
 
 Examples:

@@ -241,6 +241,7 @@ fn summary(job: &Job, scene: &Scene, traced: &Traced, time: Duration) -> String 
 fn overrides(arguments: &Build) -> Overrides {
     Overrides {
         camera: arguments.camera.clone(),
+        every_camera: false,
         size: arguments.size,
         samples: arguments.samples,
         seed: arguments.seed,

@@ -35,7 +35,7 @@ pub fn run(arguments: &Check, terminal: Terminal, interrupt: &Interrupt) -> Resu
     for file in files {
         let loaded = match fix {
             true => fixed(file, reading, terminal, interrupt),
-            false => scene::load(file, reading, &Overrides::default()),
+            false => scene::load(file, reading, &every_camera()),
         };
         worst = worst.max(match loaded {
             Ok(loaded) => messenger.say(&loaded.compiled.diagnostics, &loaded.sources)?,
@@ -49,6 +49,11 @@ pub fn run(arguments: &Check, terminal: Terminal, interrupt: &Interrupt) -> Resu
     Ok(worst)
 }
 
+/// No camera takes a picture here.
+fn every_camera() -> Overrides {
+    Overrides { every_camera: true, ..Overrides::default() }
+}
+
 /// Mends a scene, and gives what is left to say of it.
 fn fixed(
     path: &Path,
@@ -56,7 +61,7 @@ fn fixed(
     terminal: Terminal,
     interrupt: &Interrupt,
 ) -> Result<Loaded, Problem> {
-    let mut loaded = scene::load(path, reading, &Overrides::default())?;
+    let mut loaded = scene::load(path, reading, &every_camera())?;
     let before = loaded.sources.get(loaded.id).text.clone();
     let refused = loaded
         .compiled
@@ -75,7 +80,7 @@ fn fixed(
         let said = mended.applied.iter().map(|&index| &loaded.compiled.diagnostics[index]);
         done.extend(said.map(|diagnostic| report::short(diagnostic, &loaded.sources)));
         let input = Input::of(Source::new(source.name.clone(), mended.text));
-        loaded = scene::take(path, input, reading, &Overrides::default())?;
+        loaded = scene::take(path, input, reading, &every_camera())?;
     }
     let text = &loaded.sources.get(loaded.id).text;
     if is_standard(path) {

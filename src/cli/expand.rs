@@ -7,13 +7,12 @@ use super::target::{Aside, print};
 use super::terminal::Terminal;
 use super::{Exit, Problem};
 use rt_lang::expand::expand;
-use rt_lang::lower::Overrides;
 use rt_lang::scene::{Primitive, Scene, Shape};
 use std::path::Path;
 
 /// Writes it to standard output, or to a file. On standard output it is meant to lie where the scene does.
 pub fn run(arguments: &Expand, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
-    let loaded = scene::load(&arguments.scene, &arguments.reading, &Overrides::default())?;
+    let loaded = scene::load(&arguments.scene, &arguments.reading, &arguments.viewpoint.overrides())?;
     terminal.diagnostics(&loaded.compiled.diagnostics, &loaded.sources);
     let Some(scene) = &loaded.compiled.scene else { return Ok(Exit::Diagnostics) };
     let own = &loaded.sources.get(loaded.id).path;

@@ -7,19 +7,18 @@ use super::target::Aside;
 use super::terminal::Terminal;
 use super::{Exit, Problem};
 use rt_lang::export::{Exported, Options, Renderer, Unsaid, export};
-use rt_lang::lower::Overrides;
 use std::path::Path;
 
 /// Writes the files that the renderer reads.
 pub fn run(arguments: &Export, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
-    let Export { scene: path, output, approximate, tessellate, reading } = arguments;
+    let Export { scene: path, output, approximate, tessellate, viewpoint, reading } = arguments;
     let extension = output.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
     let Some(renderer) = Renderer::from_extension(extension) else {
         let problem = Problem::new(format!("`{}` is for no renderer that is known", output.display()));
         return Err(problem.help("end it in .xml for Mitsuba 3, .pbrt for pbrt-v4 or .pov for POV-Ray"));
     };
     refuse_scene(path, output)?;
-    let loaded = scene::load(path, reading, &Overrides::default())?;
+    let loaded = scene::load(path, reading, &viewpoint.overrides())?;
     terminal.diagnostics(&loaded.compiled.diagnostics, &loaded.sources);
     let Some(scene) = &loaded.compiled.scene else { return Ok(Exit::Diagnostics) };
     let stem = output.file_stem().and_then(|stem| stem.to_str()).unwrap_or("scene").to_string();

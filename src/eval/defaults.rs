@@ -59,9 +59,10 @@ mod tests {
             assert_ne!(value, Value::Invalid, "{kind}.{}: {text}", field.name);
             let (tree, slips) = syntax::parse_expression(SourceId(0), text);
             assert_eq!(slips, [], "{kind}.{}: {text}", field.name);
-            assert_eq!(check::check_value(field, &tree).1, [], "{kind}.{}: {text}", field.name);
+            let (expr, slips) = check::check_value(field, &tree);
+            assert_eq!(slips, [], "{kind}.{}: {text}", field.name);
             let kind = crate::schema::kind(kind).unwrap();
-            assert_eq!(errors::out_of_range(kind, field, &value, tree.span), None);
+            assert_eq!(errors::out_of_range(kind, field, &value, &expr), None);
         }
     }
 }

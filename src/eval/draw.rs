@@ -99,7 +99,7 @@ impl<'p> Evaluator<'p> {
             };
             mask |= 1 << index;
             let value = self.expr(expr);
-            let problem = errors::out_of_range(kind, kind.field(index), &value, expr.span);
+            let problem = errors::out_of_range(kind, kind.field(index), &value, expr);
             self.out().values.push(value);
             if let Some(problem) = problem {
                 let refused = self.report(problem);
@@ -194,7 +194,7 @@ impl<'p> Evaluator<'p> {
         };
         (self.group, self.link) = (group, link);
         if let Some(block) = &make.block {
-            self.uses.push(span);
+            self.uses.push(span.into());
             self.block(block, false);
             self.uses.pop();
             if let Some(own) = make.inside {
@@ -277,7 +277,7 @@ impl<'p> Evaluator<'p> {
     /// A field of [`PLACED`] by its index there.
     pub(super) fn placed_field(&mut self, index: usize, expr: &crate::check::Expr) -> Given {
         let value = self.expr(expr);
-        let value = match errors::out_of_range(group::KIND, &PLACED[index], &value, expr.span) {
+        let value = match errors::out_of_range(group::KIND, &PLACED[index], &value, expr) {
             Some(diagnostic) => self.report(diagnostic),
             None => value,
         };

@@ -1,7 +1,7 @@
 //! One function for each thing that can be wrong with a value.
 
 use super::{MAX_TEXTURE_LEVELS, Value};
-use crate::check::{Declared, Function, Param};
+use crate::check::{Declared, Expr, ExprKind, Function, Param, Variable};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::schema::{Field, FieldType, KindId, Range};
 use crate::span::Span;
@@ -34,23 +34,47 @@ fn show_value(value: &Value) -> String {
     }
 }
 
+/// `i = 2`: the turn of a loop, where its value can be said in a few words.
+pub(super) fn turn(variable: &Variable, value: &Value) -> Option<String> {
+    let Variable { name, dim } = variable;
+    let shown = match value {
+        Value::Number(x) => show_quantity(*x, *dim),
+        Value::Bool(value) => value.to_string(),
+        Value::Text(text) => format!("\"{text}\""),
+        Value::Color(_) => format!("rgb{}", show_value(value)),
+        _ => return None,
+    };
+    Some(format!("{name} = {shown}"))
+}
+
 /// What the range of a field refuses, or none where the value lies in it.
 #[inline]
-pub(super) fn out_of_range(kind: KindId, field: &Field, value: &Value, span: Span) -> Option<Diagnostic> {
+pub(super) fn out_of_range(kind: KindId, field: &Field, value: &Value, expr: &Expr) -> Option<Diagnostic> {
     match value {
         // Most are.
         Value::Number(x) if field.range.contains(*x) => None,
         Value::Tuple(v) if field.range.contains(v.min_element()) && field.range.contains(v.max_element()) => {
             None
         }
-        _ => refused(kind, field, value, span),
+        _ => refused(kind, field, value, expr.span, is_literal(expr)),
     }
 }
 
-fn refused(kind: KindId, field: &Field, value: &Value, span: Span) -> Option<Diagnostic> {
+/// Whether a value is the number that is written, and not computed.
+fn is_literal(expr: &Expr) -> bool {
+    match &expr.kind {
+        ExprKind::Number(_) | ExprKind::RowNumber { .. } => true,
+        ExprKind::Unary { operand, .. } => is_literal(operand),
+        ExprKind::Tuple(components) => components.iter().all(is_literal),
+        _ => false,
+    }
+}
+
+/// `literal` is whether the value stands in the text.
+fn refused(kind: KindId, field: &Field, value: &Value, span: Span, literal: bool) -> Option<Diagnostic> {
     if let Value::Texture(texture) = value {
         let parts = texture.parts.iter().flatten();
-        return parts.into_iter().find_map(|part| out_of_range(kind, field, &part.value, part.span));
+        return parts.into_iter().find_map(|part| refused(kind, field, &part.value, part.span, false));
     }
     let refused = |x: &f64| !field.range.contains(*x);
     let bad = match value {
@@ -64,11 +88,11 @@ fn refused(kind: KindId, field: &Field, value: &Value, span: Span) -> Option<Dia
         },
         _ => None,
     };
-    bad.map(|bad| beyond(kind, field, bad, span))
+    bad.map(|bad| beyond(kind, field, bad, span, literal))
 }
 
 /// A field with a number that its range refuses.
-fn beyond(kind: KindId, field: &Field, bad: f64, span: Span) -> Diagnostic {
+fn beyond(kind: KindId, field: &Field, bad: f64, span: Span, literal: bool) -> Diagnostic {
     let dim = dimension(field.ty);
     let shown = show_quantity(bad, dim);
     let allowed = allowed(field.ty, field.range);
@@ -84,14 +108,14 @@ fn beyond(kind: KindId, field: &Field, bad: f64, span: Span) -> Diagnostic {
     let what = if is_color(field.ty) { "channels of " } else { "" };
     let message = format!("{what}`{}` must be {allowed}, this is {shown}", field.name);
     let diagnostic = Diagnostic::new(Code::E0401, message, span).at("out of range");
-    match mend_of_range(field, bad) {
+    match mend_of_range(field, bad, literal) {
         Some(help) => diagnostic.help(help),
         None => diagnostic,
     }
 }
 
 /// What is probably meant by a value out of range, where that is more than the range itself says.
-fn mend_of_range(field: &Field, bad: f64) -> Option<String> {
+fn mend_of_range(field: &Field, bad: f64, literal: bool) -> Option<String> {
     let Range { low, high, .. } = field.range;
     let ratio = field.ty == FieldType::Scalar(units::NONE) && high == 1.0;
     match () {
@@ -99,7 +123,7 @@ fn mend_of_range(field: &Field, bad: f64) -> Option<String> {
         () if ratio && (2.0..=100.0).contains(&bad) => {
             Some(format!("a ratio may be written in percent: `{}%`", show(bad)))
         }
-        () if low >= 0.0 && bad < 0.0 && field.range.contains(-bad) => {
+        () if literal && low >= 0.0 && bad < 0.0 && field.range.contains(-bad) => {
             Some(format!("without its sign it would fit: `{}`", show_quantity(-bad, dimension(field.ty))))
         }
         () => None,

@@ -98,6 +98,10 @@ impl Evaluator<'_> {
             }
         }
         if all.is_empty() {
+            // What came to nothing may have stood there.
+            if self.incomplete {
+                return Value::Invalid;
+            }
             return self.report(errors::no_bounds(span));
         }
         Value::Bounds(Rc::new(all))

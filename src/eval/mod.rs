@@ -37,6 +37,7 @@ use crate::span::Span;
 use crate::syntax::Rows;
 use built::{Built, NONE};
 use frame::Frame;
+use origin::Way;
 use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::rc::Rc;
@@ -73,7 +74,7 @@ struct Evaluator<'p> {
     /// How it came to be drawn: a link of the innermost buffer.
     link: u32,
     /// The uses that led here, outermost first.
-    uses: Vec<Span>,
+    uses: Vec<Way>,
     /// How many parts, groups and calls are around.
     levels: usize,
     /// How many expressions are around.
@@ -146,7 +147,8 @@ impl<'p> Evaluator<'p> {
         diagnostic.move_places(|place| self.here(place));
         if self.reported.insert((diagnostic.code, diagnostic.primary.span)) {
             let place = diagnostic.primary.span;
-            diagnostic.uses = self.uses.iter().copied().filter(|span| !span.contains(place)).collect();
+            let apart = |way: &&Way| way.turn.is_some() || !way.span.contains(place);
+            diagnostic.uses = self.uses.iter().filter(apart).map(Way::shown).collect();
             self.diagnostics.push(diagnostic);
         }
         Value::Invalid

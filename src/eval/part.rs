@@ -2,6 +2,7 @@
 
 use super::built::Shift;
 use super::frame::Frame;
+use super::origin::Way;
 use super::value::{Inside, PartValue, Site};
 use super::{Evaluator, Given, Made, Value};
 use crate::check::{Around, Expr, FieldPlace, FileId, FunctionId, Make, PartId, Written};
@@ -138,7 +139,7 @@ impl<'p> Evaluator<'p> {
         }
         let group = self.out().begin_group(outer);
         (self.group, self.link) = (group, link);
-        self.uses.extend_from_slice(chain);
+        self.uses.extend(chain.iter().copied().map(Way::from));
         let is_file = self.program.files.iter().any(|file| file.part == value.part);
         let frame = Frame::new(part.slots, value.around.clone());
         let given = Rc::new(value.params.clone());
@@ -209,7 +210,7 @@ impl<'p> Evaluator<'p> {
         }
         let frame = Frame::with(values, body.slots, around);
         let outer = std::mem::replace(&mut self.frame, frame);
-        self.uses.push(span);
+        self.uses.push(span.into());
         let value = if self.step(body.cost, span) { self.expr(&body.value) } else { Value::Invalid };
         self.uses.pop();
         self.frame = outer;

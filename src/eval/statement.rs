@@ -1,7 +1,8 @@
 //! Statements.
 
+use super::origin::Way;
 use super::{Evaluator, Given, Value, errors};
-use crate::check::{Block, Expr, Make, Statement, StatementKind};
+use crate::check::{Block, Expr, Make, Statement, StatementKind, Variable};
 use crate::span::Span;
 use crate::syntax::Rows;
 use std::collections::BTreeMap;
@@ -57,7 +58,9 @@ impl Evaluator<'_> {
                 }
             }
             StatementKind::Rows { rows, makes, apart } => self.rows(rows, makes, apart),
-            StatementKind::For { slot, list, body, cost } => self.repeat(*slot, list, body, *cost, span),
+            StatementKind::For { slot, variable, list, body, cost } => {
+                self.repeat((*slot, variable), list, body, *cost, span)
+            }
             StatementKind::If { condition, then, otherwise } => match self.expr(condition) {
                 Value::Bool(true) => self.block(then, false),
                 Value::Bool(false) => self.block(otherwise, false),
@@ -110,18 +113,28 @@ impl Evaluator<'_> {
         self.row.as_ref().map_or(place, |(rows, row)| rows.place(*row as usize, place))
     }
 
-    fn repeat(&mut self, slot: usize, list: &Expr, body: &Block, cost: u64, span: Span) {
+    fn repeat(
+        &mut self,
+        (slot, variable): (usize, &Arc<Variable>),
+        list: &Expr,
+        body: &Block,
+        cost: u64,
+        span: Span,
+    ) {
         let Value::List(list) = self.expr(list) else {
             self.incomplete = true;
             return;
         };
         let outer = self.link;
         self.link = self.out().link(span, outer);
-        self.uses.push(span);
+        self.uses.push(Way { span, turn: None });
         let mut index = 0;
         while let Some(item) = list.get(index) {
             if !self.step(cost, span) {
                 break;
+            }
+            if let Some(way) = self.uses.last_mut() {
+                way.turn = Some((variable.clone(), item.clone()));
             }
             self.frame.set(slot, item);
             self.block(body, false);

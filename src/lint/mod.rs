@@ -16,7 +16,7 @@ mod media;
 mod precision;
 mod view;
 
-use crate::diagnostic::{Code, Diagnostic};
+use crate::diagnostic::{Code, Diagnostic, Use};
 use crate::eval::Origins;
 use crate::lower::Marks;
 use crate::scene::{Material, OriginId, Primitive, Scene};
@@ -80,7 +80,7 @@ impl Lint<'_> {
     fn about(&self, code: Code, message: impl Into<String>, origin: OriginId) -> Diagnostic {
         let at = self.at(origin).unwrap_or_else(|| At { span: errors::start(), uses: vec![] });
         let mut diagnostic = Diagnostic::new(code, message, at.span);
-        diagnostic.uses = at.uses;
+        diagnostic.uses = at.uses.into_iter().map(Use::from).collect();
         diagnostic
     }
 

@@ -5,7 +5,7 @@ use crate::eval::{Aim, Fields, Focus, Made, ThingId};
 use crate::math::{DVec2, DVec3, atan2, sin, tan};
 use crate::scene::shape::Bounds;
 use crate::scene::{Camera, Projection};
-use crate::schema::{DEFAULT_FOV, camera, lens};
+use crate::schema::{Category, DEFAULT_FOV, camera, lens};
 use crate::span::Span;
 
 /// From the middle of the picture towards a camera that was not placed: a three-quarter view.
@@ -18,6 +18,16 @@ const MARGIN: f64 = 1.08;
 const UPRIGHT: f64 = 2e-15;
 
 impl Lowering<'_> {
+    /// Reports what is wrong with the cameras that do not take the picture, where they are looked at.
+    pub(super) fn other_cameras(&mut self, blocks: &Blocks, size: Option<[u32; 2]>) {
+        let chosen = self.out.notes.len();
+        for camera in &blocks.others {
+            let other = Blocks { camera: Some(camera), others: vec![], ..*blocks };
+            self.camera(&other, size);
+        }
+        self.out.notes.truncate(chosen);
+    }
+
     /// The camera, and the exposure it asks for; none where something is wrong.
     pub(super) fn camera(
         &mut self,
@@ -146,20 +156,34 @@ impl Lowering<'_> {
         }
     }
 
-    /// The centre of the bounds of a thing or group.
+    /// The centre of the bounds of a thing or group. Of what has an error nothing more is said.
     fn center(&mut self, id: ThingId, span: Span) -> Option<DVec3> {
+        let range = self.places(id)?;
+        if range.clone().any(|index| self.is_unknown(index)) {
+            return None;
+        }
         let mut bounds = Bounds::EMPTY;
-        for extent in &self.extents[self.places(id)?] {
+        for extent in &self.extents[range] {
             match extent {
                 Extent::Box(part) | Extent::Lamp(part) => bounds = bounds.union(*part),
                 Extent::Endless | Extent::Nowhere => {}
             }
         }
         if bounds.is_empty() {
-            self.report(errors::no_middle(span));
+            // What came to nothing may have stood there.
+            if !self.things.incomplete {
+                self.report(errors::no_middle(span));
+            }
             return None;
         }
         Some(bounds.center())
+    }
+
+    /// Whether an error keeps it from being known where a thing is.
+    fn is_unknown(&self, index: usize) -> bool {
+        let thing = self.things.get(index);
+        let shape = thing.made.kind().get().category == Category::Shape && !thing.hidden;
+        !thing.made.is_sound() || shape && matches!(self.extents[index], Extent::Nowhere)
     }
 
     /// The unit vectors to the right and up in the picture.

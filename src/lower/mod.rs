@@ -11,7 +11,7 @@ mod sky;
 mod texture;
 
 use crate::color::Rgb;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Use};
 use crate::eval::{Aim, Reach, Thing, ThingId, Things};
 use crate::files::{Contents, Files};
 use crate::math::{DAffine3, PI, sin};
@@ -34,6 +34,8 @@ pub const MAX_PIXELS: u64 = 100_000_000;
 pub struct Overrides {
     /// The name of the camera that takes the picture.
     pub camera: Option<String>,
+    /// Whether all cameras are looked at, and so none of several has to be chosen.
+    pub every_camera: bool,
     /// Width and height in pixels.
     pub size: Option<[u32; 2]>,
     /// Samples a pixel, in place of the file's samples or noise.
@@ -115,6 +117,7 @@ pub fn lower(
     lowering.surfaces_and_lights();
     let blocks = lowering.blocks();
     let size = lowering.size(&blocks);
+    lowering.other_cameras(&blocks, size);
     let camera = lowering.camera(&blocks, size);
     lowering.say_defaults();
     if let (Some(camera), Some(size)) = (camera, size) {
@@ -205,6 +208,8 @@ enum Extent {
 #[derive(Default)]
 struct Blocks<'a> {
     camera: Option<&'a Thing<'a>>,
+    /// Cameras that do not take the picture and are looked at all the same.
+    others: Vec<&'a Thing<'a>>,
     lens: Option<&'a Thing<'a>>,
     render: Option<&'a Thing<'a>>,
 }
@@ -334,6 +339,11 @@ impl<'a> Lowering<'a> {
             .map(|(index, thing)| (*index, thing))
             .collect();
         blocks.camera = self.choose_camera(&cameras, blocks.render);
+        if self.overrides.every_camera {
+            let taken = blocks.camera.map(|camera| camera.made.span());
+            let others = cameras.iter().map(|(_, camera)| *camera);
+            blocks.others = others.filter(|camera| Some(camera.made.span()) != taken).collect();
+        }
         if let (Some(lens), [first, _, ..]) = (blocks.lens, &cameras[..]) {
             self.report(errors::lens_of_which(lens.made.span(), first.1.made.span()));
         }
@@ -363,6 +373,7 @@ impl<'a> Lowering<'a> {
         let unknown = self.things.incomplete || render.is_some_and(|render| !render.made.is_sound());
         if let [_, (_, second), ..] = cameras
             && !unknown
+            && !(self.overrides.every_camera && names.len() == cameras.len())
         {
             self.report(errors::which_camera(second.made.span(), cameras[0].1.made.span(), &names));
         }
@@ -445,8 +456,11 @@ impl<'a> Lowering<'a> {
     /// Adds the chain of uses that led to a thing, but for those whose text holds the place anyway.
     fn used_at(&self, thing: &Thing, mut diagnostic: Diagnostic) -> Diagnostic {
         let chain = self.things.origins.chain(thing.origin);
-        diagnostic.uses =
-            chain.into_iter().filter(|place| !place.contains(diagnostic.primary.span)).collect();
+        diagnostic.uses = chain
+            .into_iter()
+            .filter(|place| !place.contains(diagnostic.primary.span))
+            .map(Use::from)
+            .collect();
         diagnostic
     }
 }

@@ -21,7 +21,7 @@ struct Object<'a> {
     labels: Vec<Note<'a>>,
     help: Option<&'a str>,
     fixes: Vec<Mend<'a>>,
-    uses: Vec<Note<'a>>,
+    uses: Vec<Used<'a>>,
 }
 
 /// A range of a file.
@@ -45,6 +45,15 @@ struct Note<'a> {
     #[serde(flatten)]
     place: Place<'a>,
     text: &'a str,
+}
+
+/// A use, with the first line of its text.
+#[derive(Serialize)]
+struct Used<'a> {
+    #[serde(flatten)]
+    note: Note<'a>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    turn: Option<&'a str>,
 }
 
 #[derive(Serialize)]
@@ -73,7 +82,10 @@ pub fn json(diagnostic: &Diagnostic, sources: &Sources) -> String {
         uses: diagnostic
             .uses
             .iter()
-            .map(|span| note(*span, super::first_line(sources.text(*span))))
+            .map(|used| Used {
+                note: note(used.span, super::first_line(sources.text(used.span))),
+                turn: used.turn.as_deref(),
+            })
             .collect(),
     };
     serde_json::to_string(&object).unwrap_or_else(|_| unreachable!("texts and numbers are always JSON"))

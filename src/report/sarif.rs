@@ -22,7 +22,8 @@ impl Sarif {
             text.push_str(help);
         }
         let notes = diagnostic.labels.iter().map(|label| (label.span, label.text.as_str()));
-        let uses = diagnostic.uses.iter().map(|span| (*span, "used here"));
+        let uses =
+            diagnostic.uses.iter().map(|used| (used.span, used.turn.as_deref().unwrap_or("used here")));
         let related: Vec<Value> = notes
             .chain(uses)
             .map(|(span, text)| json!({ "physicalLocation": location(span, sources), "message": { "text": text } }))

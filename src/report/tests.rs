@@ -28,7 +28,7 @@ fn shows_code_place_labels_help_and_uses() {
             .at("angle")
             .label(Span::new(id, 15, 21), "of this")
             .help("write `8mm`");
-    diagnostic.uses.push(Span::new(garden, 1, 21));
+    diagnostic.uses.push(Span::new(garden, 1, 21).into());
     let expected = "\
 E0203 × `radius` wants a length, this is an angle
    ╭─[stool.rt:2:20]
@@ -169,11 +169,11 @@ fn a_chain_of_uses_is_shown_outermost_first_and_its_middle_is_left_out() {
         Span::new(id, start, start + part.len())
     };
     let mut diagnostic = Diagnostic::new(Code::E0302, "`sphere` needs `radius`", at("sphere"));
-    diagnostic.uses = vec![at("group a"), at("group b")];
+    diagnostic.uses = vec![at("group a").into(), at("group b").into()];
     let shown = human(&diagnostic, &sources, PLAIN);
     assert!(shown.ends_with("  in `group a`, stool.rt:1:1\n  in `group b`, stool.rt:2:3\n"), "{shown}");
 
-    diagnostic.uses = (0..100).map(|n| [at("group a"), at("group b")][n % 2]).collect();
+    diagnostic.uses = (0..100).map(|n| [at("group a"), at("group b")][n % 2].into()).collect();
     let shown = human(&diagnostic, &sources, PLAIN);
     assert_eq!(shown.matches("  in `group").count(), 7, "{shown}");
     assert!(
@@ -181,7 +181,7 @@ fn a_chain_of_uses_is_shown_outermost_first_and_its_middle_is_left_out() {
         "{shown}"
     );
 
-    diagnostic.uses = vec![at("group b"); 1_000_000];
+    diagnostic.uses = vec![at("group b").into(); 1_000_000];
     let shown = human(&diagnostic, &sources, PLAIN);
     assert!(shown.ends_with("  in `group b`, stool.rt:2:3, 1000000 levels\n"), "{shown}");
 }

@@ -331,8 +331,7 @@ impl<'t> Cutter<'t> {
 
     /// Whether this comma stands between the condition of an `assert` and its message.
     fn message_follows(&mut self) -> bool {
-        let rest = self.text[self.at + 1..].trim_ascii_start();
-        std::mem::take(&mut self.asserts) && rest.starts_with(['"', '('])
+        std::mem::take(&mut self.asserts) && self.next_token(self.at + 1).starts_with(['"', '('])
     }
 
     fn number(&mut self) -> Last {
@@ -384,7 +383,7 @@ impl<'t> Cutter<'t> {
 
     /// `<` and `>` compare, save around a triple, where they stand for parentheses.
     fn angle(&mut self, byte: u8) -> Last {
-        let operand = self.last == Last::Operand;
+        let operand = self.last == Last::Operand && !self.behind_color_word();
         let level = self.level();
         if byte == b'<' && !operand {
             level.angled += 1;

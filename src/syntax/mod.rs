@@ -6,6 +6,7 @@
 //! differs from an earlier one in its literals only, `rows` keeps it as its literals. What is said of slips is in `errors`.
 //! `format` goes the other way.
 
+mod angled;
 pub mod ast;
 mod build;
 mod cut;

@@ -1,6 +1,7 @@
 //! Entries with a slip in their form: what is said of them, and what is still understood.
 
 use super::BLANKS;
+use super::angled;
 use super::ast::{Broken, Entry, Expr, ExprKind, Field, Name, StatementKind};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements};
@@ -101,7 +102,8 @@ impl<'t> Builder<'t> {
         }
     }
 
-    /// `1,5m`. Whether it is a number with a decimal comma; else the value behind the comma belongs to nothing.
+    /// `1,5m`, a number with a decimal comma, or `0,1,0`, values without parentheses: whether it is one of them; else
+    /// the value behind the comma belongs to nothing.
     pub(super) fn decimal(&self, pair: &Node) -> bool {
         let comma = pair.as_span().start();
         let is_digit = |c: char| c.is_ascii_digit() || c == '_';
@@ -113,10 +115,23 @@ impl<'t> Builder<'t> {
             self.report(errors::unexpected_entry(number, place, false));
             return false;
         }
+        if self.holds_components(pair) {
+            let behind = pair.as_str().trim_ascii_end().len();
+            self.report(errors::bare_components(self.at(comma - digits, comma + behind)));
+            return true;
+        }
         let place = self.at(comma - digits, comma + 1 + number.len());
         let edit = self.at(comma, comma + 1);
         self.report(errors::decimal_comma(&whole[whole.len() - digits..], number, place, edit));
         true
+    }
+
+    /// Whether what begins with a comma between digits goes on with another, or closes an angle bracket.
+    fn holds_components(&self, pair: &Node) -> bool {
+        let behind = pair.as_str()[1..].split(['(', '[', '{', '"', '\n']).next().unwrap_or("");
+        let before = self.all_before(pair.as_span().start());
+        let line = before.rsplit('\n').next().unwrap_or("");
+        behind.contains(',') || (behind.contains('>') && line.rfind('<') > line.rfind('>'))
     }
 
     /// `radius = 5cm`
@@ -175,6 +190,9 @@ impl<'t> Builder<'t> {
             self.report(statements::begins_nothing(&name.text, name.span));
         } else if !top && is_placement(&name.text) && value.as_str().starts_with('(') {
             self.report(errors::placement_alone(&name.text, name.span.to(value_span)));
+        } else if let Some(color) = only(&value, Rule::angled_color).filter(|_| !top) {
+            let (value, depth) = angled::color(self, color, Some(&name));
+            return (Entry::Field(Field { name, value }), depth);
         } else if !top {
             self.report(errors::missing_colon(&name.text, name.span, value_span));
             let (value, depth) = value::expression(self, value);
@@ -245,6 +263,13 @@ impl<'t> Builder<'t> {
 /// Whether a text is one word.
 fn is_word(text: &str) -> bool {
     !text.is_empty() && text.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
+}
+
+/// What an expression is made of, if that is one thing by this rule.
+fn only<'t>(value: &Node<'t>, rule: Rule) -> Option<Node<'t>> {
+    let mut inner = value.clone().into_inner();
+    let first = inner.next().filter(|first| first.as_rule() == rule)?;
+    inner.next().is_none().then_some(first)
 }
 
 /// Whether a word makes a placement.

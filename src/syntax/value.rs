@@ -1,5 +1,6 @@
 //! Expressions: the flat list that the grammar gives becomes a tree by precedence.
 
+use super::angled;
 use super::ast::{Argument, BinaryOp, Expr, ExprKind, Name, Path, UnaryOp};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements};
@@ -29,7 +30,7 @@ fn binary(symbol: &str) -> Option<BinaryOp> {
     BinaryOp::ALL.iter().copied().find(|operator| operator.symbol() == symbol)
 }
 
-fn invalid(span: Span) -> Deep<Expr> {
+pub(super) fn invalid(span: Span) -> Deep<Expr> {
     (Expr { kind: ExprKind::Invalid, span }, 1)
 }
 
@@ -156,7 +157,8 @@ fn primary(builder: &Builder, pair: Node) -> Deep<Expr> {
         Rule::group => group(builder, pair),
         Rule::color => leaf(color(builder, pair.as_str(), span)),
         Rule::text => leaf(ExprKind::Text(text(builder, &pair))),
-        Rule::angled => angled(builder, pair),
+        Rule::angled => angled::triple(builder, pair),
+        Rule::angled_color => angled::color(builder, pair, None),
         Rule::malformed => {
             builder.report(errors::bad_number(pair.as_str(), span));
             invalid(span)
@@ -396,26 +398,6 @@ fn scaled(builder: &Builder, value: Expr, depth: usize, unit: Option<Name>, span
     let Some(unit) = unit else { return (value, depth) };
     let kind = ExprKind::Scaled { value: Box::new(value), unit };
     checked(builder, Expr { kind, span }, depth + 1, span)
-}
-
-/// The slip `<x, y, z>`. Whether a unit is missing too is not asked: the mend shows one.
-fn angled(builder: &Builder, pair: Node) -> Deep<Expr> {
-    let span = builder.span(&pair);
-    let open = Span { end: span.start + 1, ..span };
-    let is_triple = pair.as_str().contains(',');
-    let (ends, parts): (Vec<Node>, Vec<Node>) =
-        pair.into_inner().partition(|inner| inner.as_rule() == Rule::angle_end);
-    let Some(end) = ends.first().filter(|_| is_triple) else {
-        builder.report(errors::unexpected_value("<", open));
-        return invalid(span);
-    };
-    let end = builder.span(end);
-    builder.report(errors::angle_brackets(span, open, Span { end: end.start + 1, ..end }));
-    // What is wrong inside is said as well.
-    parts.into_iter().for_each(|part| {
-        expression(builder, part);
-    });
-    invalid(span)
 }
 
 // --- Literals -----------------------------------------------------------------------------------------------

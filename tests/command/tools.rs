@@ -171,6 +171,28 @@ fn certain_mends_are_made() {
 }
 
 #[test]
+fn one_of_several_cameras_is_chosen_where_one_is_wanted() {
+    let desk = Desk::new();
+    desk.put(
+        "two.rt",
+        "sphere { radius: 1m }\ncamera a { look: 0 }\ncamera b { from: (0, 0, 9)m, look: 0 }\n",
+    );
+    assert_eq!(desk.run("check two.rt").code, Some(0));
+    for command in ["info two.rt", "expand two.rt -o flat.rt", "export two.rt -o two.xml"] {
+        assert_eq!(desk.run(command).code, Some(1), "{command}");
+        assert_eq!(desk.run(&format!("{command} --camera b")).code, Some(0), "{command}");
+    }
+    assert!(desk.run("expand two.rt --camera b").printed().contains("from: (0, 0, 9)"));
+    desk.put(
+        "wrong.rt",
+        "sphere { radius: 1m }\ncamera a {}\ncamera b { from: (0, 1, 0)m, look: (0, 1, 0)m }\n",
+    );
+    let check = desk.run("check --message-format short wrong.rt");
+    assert_eq!(check.code, Some(1));
+    assert!(check.stderr.contains("E0404"), "{}", check.stderr);
+}
+
+#[test]
 fn info_tells_what_is_in_a_scene() {
     let desk = Desk::new();
     desk.put("two.rt", "sphere { radius: 1m }\nsphere { radius: 1m, at: (4, 0, 0)m }\ncamera wide {}\nrender { samples: 3 }\n");

@@ -74,6 +74,21 @@ fn brackets() -> impl TypedValueParser<Value = usize> {
     clap::value_parser!(u64).range(1..=MAX_DEPTH as u64).map(|n| n as usize)
 }
 
+/// Which camera takes the picture that a tool tells of or writes.
+#[derive(Args, Clone, Debug, Default)]
+pub struct Viewpoint {
+    /// Takes the camera of this name, in place of the one that `render` names.
+    #[arg(long, value_name = "NAME")]
+    pub camera: Option<String>,
+}
+
+impl Viewpoint {
+    /// What the compiler is told of it.
+    pub fn overrides(&self) -> Overrides {
+        Overrides { camera: self.camera.clone(), ..Overrides::default() }
+    }
+}
+
 /// How messages are written, and which warnings are not let pass.
 #[derive(Args, Clone, Debug, Default)]
 pub struct Messages {
@@ -169,6 +184,10 @@ pub struct Expand {
 
     #[command(flatten)]
     #[allow(missing_docs)]
+    pub viewpoint: Viewpoint,
+
+    #[command(flatten)]
+    #[allow(missing_docs)]
     pub reading: Reading,
 }
 
@@ -193,6 +212,10 @@ pub struct Export {
 
     #[command(flatten)]
     #[allow(missing_docs)]
+    pub viewpoint: Viewpoint,
+
+    #[command(flatten)]
+    #[allow(missing_docs)]
     pub reading: Reading,
 }
 
@@ -206,6 +229,10 @@ pub struct Info {
     /// Prints one JSON object.
     #[arg(long)]
     pub json: bool,
+
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub viewpoint: Viewpoint,
 
     #[command(flatten)]
     #[allow(missing_docs)]

@@ -3,7 +3,21 @@
 use super::super::errors;
 use super::{Cutter, Last, is_word};
 
+/// The words that POV-Ray has before the parts of a colour in angle brackets.
+///
+/// Source: POV-Ray 3.7 reference, "Color Expressions".
+fn is_color_word(word: &str) -> bool {
+    matches!(word, "rgb" | "rgbf" | "rgbt" | "rgbft" | "srgb" | "srgbf" | "srgbt" | "srgbft")
+}
+
 impl Cutter<'_> {
+    /// Whether the last token is a word that has angle brackets behind it elsewhere: `rgb <1, 0, 0>`.
+    pub(super) fn behind_color_word(&self) -> bool {
+        let before = &self.bytes[..self.end];
+        let length = before.iter().rev().take_while(|&&byte| is_word(byte)).count();
+        is_color_word(&self.text[self.end - length..self.end])
+    }
+
     /// Whether a comma at the top level stands within a number: `let a = 1,5m`.
     pub(super) fn is_decimal_comma(&self) -> bool {
         let digit = |at: usize| self.byte(at).is_ascii_digit();

@@ -116,6 +116,19 @@ impl<'t> Cutter<'t> {
         }
     }
 
+    /// The text from the first token at or behind `at` on.
+    pub(super) fn next_token(&self, at: usize) -> &'t str {
+        let mut rest = self.text[at..].trim_ascii_start();
+        loop {
+            let comment = match rest {
+                line if line.starts_with("//") => line.find('\n'),
+                block if block.starts_with("/*") => block[2..].find("*/").map(|length| length + 4),
+                _ => return rest,
+            };
+            rest = rest[comment.unwrap_or(rest.len())..].trim_ascii_start();
+        }
+    }
+
     // --- What a line begins with ----------------------------------------------------------------------------
 
     pub(super) fn word(&self, at: usize) -> &'t str {

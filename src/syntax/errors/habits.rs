@@ -4,6 +4,7 @@
 use super::{shown, unexpected};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::span::Span;
+use crate::syntax::ast::Name;
 
 /// What begins a statement elsewhere, and how that is written here.
 const WORDS: &[(&[&str], &str)] = &[
@@ -67,6 +68,40 @@ pub(in crate::syntax) fn sign_before_body(kind: &str, sign: &str, edit: Span) ->
         .at("the body follows its kind at once")
         .help(format!("write `{kind} {{ … }}`"))
         .fix(edit, " ")
+}
+
+/// `rgb <1, 0, 0>`, `color rgb <1, 0, 0>`. `field` is the name of the field before it, where `:` is missing
+/// behind that. `edits` is what comes before the parts and what comes behind them, where the mend is certain.
+pub(in crate::syntax) fn angled_color(
+    function: &str,
+    parts: &[&str],
+    span: Span,
+    field: Option<&Name>,
+    edits: Option<(Span, Span)>,
+) -> Diagnostic {
+    let call = match parts {
+        [r, g, b, ..] => format!("{function}({r}, {g}, {b})"),
+        _ => format!("{function}(1, 0, 0)"),
+    };
+    let diagnostic = Diagnostic::new(Code::E0006, "angle brackets do not hold the parts of a colour", span)
+        .at("parentheses are wanted");
+    let diagnostic = match field {
+        Some(name) => diagnostic.help(format!("write `{}: {call}`", name.text)),
+        None => diagnostic.help(format!("write `{call}`")),
+    };
+    let Some((open, close)) = edits else { return diagnostic };
+    let diagnostic = diagnostic.fix(open, format!("{function}(")).fix(close, ")");
+    match field {
+        Some(name) => diagnostic.fix(name.span.after(), ":"),
+        None => diagnostic,
+    }
+}
+
+/// `at: 0,1,0`
+pub(in crate::syntax) fn bare_components(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, "several values stand here without parentheses", span)
+        .at("more than one value")
+        .help("write `(x, y, z)`, with the unit behind it: `(0, 1, 0)m`")
 }
 
 /// `radius: 1,5m`
