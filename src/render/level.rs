@@ -1,6 +1,8 @@
 //! Which vector instructions the tracer runs on.
 
-use super::lanes::{Eight, Four, One, Sixteen};
+#[cfg(target_arch = "x86_64")]
+use super::lanes::{Eight, Sixteen};
+use super::lanes::{Four, One};
 use fearless_simd::Level as Processor;
 
 /// A set of vector instructions, the narrowest first. Which are there depends on the processor.
