@@ -1,8 +1,8 @@
 //! Where light comes from, and how to draw a direction towards it.
 //!
-//! At every vertex one light is chosen with a probability that follows a cheap estimate of what it gives there
-//! ([`choice`]; by a [`tree`] where there are many). Each [`sample`] stands beside the `pdf` with which a ray that was scattered towards the light would have been
-//! drawn, so that the two ways can share the work (multiple importance sampling).
+//! At every vertex one light is chosen with a probability that follows a cheap estimate of what it gives there (by a
+//! tree where there are many). Each sample stands beside the density with which a ray that was scattered towards the
+//! light would have been drawn, so that the two ways can share the work (multiple importance sampling).
 
 mod choice;
 mod panorama;
