@@ -57,7 +57,7 @@ impl Checker<'_> {
                         true => errors::unknown_in_setting(&name),
                         false => errors::unknown_name(&name, &self.value_names()),
                     };
-                    self.report(diagnostic);
+                    self.report_lost(&name.text, diagnostic);
                     (ExprKind::Invalid, Type::Invalid)
                 }
             },
@@ -246,8 +246,12 @@ impl Checker<'_> {
         fits: impl Fn(&Type) -> bool,
     ) -> Option<()> {
         let wrong: Vec<_> = operands.into_iter().filter(|(_, ty)| !fits(ty)).collect();
-        for (span, ty) in &wrong {
-            self.report(errors::operand(symbol, wanted, *span, ty));
+        match wrong[..] {
+            // Wrong in the same way on both sides: what was to be joined is another thing, which is one slip.
+            [(span, a), (other, b)] if a.describe() == b.describe() => {
+                self.report(errors::operand(symbol, wanted, span, a).label(other, "so is this"));
+            }
+            _ => wrong.iter().for_each(|(span, ty)| self.report(errors::operand(symbol, wanted, *span, ty))),
         }
         wrong.is_empty().then_some(())
     }

@@ -77,7 +77,7 @@ impl Checker<'_> {
         }
         let Some(found) = self.lookup(&name.text) else {
             let diagnostic = errors::unknown(Code::E0101, "kind", name, &self.kind_names());
-            self.report(diagnostic);
+            self.report_lost(&name.text, diagnostic);
             // What stands inside is looked at as if the kind had been spelt right.
             let built_ins: Vec<&str> = schema::KINDS.iter().map(|kind| kind.name).collect();
             let guess = errors::closest(&name.text, &built_ins).and_then(schema::kind);
@@ -187,6 +187,9 @@ impl Checker<'_> {
     ) {
         let kind = making.kind;
         let mut places: Vec<Option<Span>> = vec![None; self.field_count(kind)];
+        let mut told = None;
+        // Those that are only taken to be meant by another name.
+        let mut guessed = vec![false; places.len()];
         for entry in entries {
             let (name, value) = match entry {
                 Entry::Field(field) => (&field.name, Some(&field.value)),
@@ -195,11 +198,13 @@ impl Checker<'_> {
             };
             let Some(field) = self.find_field(kind, &name.text) else {
                 if value.is_some() {
-                    self.unknown_field(kind, name, &places);
+                    self.unknown_field(kind, name, &places, &mut told);
                 }
                 // A misspelt field counts as given.
                 if let Some(field) = self.probable_field(kind, name, &places) {
-                    places[self.bit(kind, field)] = Some(name.span);
+                    let bit = self.bit(kind, field);
+                    places[bit] = Some(name.span);
+                    guessed[bit] = true;
                     make.fields.push((field, Expr::invalid(name.span)));
                 }
                 if let Some(value) = value.filter(|value| !matches!(value.kind, Tree::Name(_))) {
@@ -208,7 +213,10 @@ impl Checker<'_> {
                 continue;
             };
             let bit = self.bit(kind, field);
-            if let Some(first) = places[bit] {
+            if std::mem::take(&mut guessed[bit]) {
+                // The one before was something else, which was reported.
+                make.fields.retain(|(given, _)| *given != field);
+            } else if let Some(first) = places[bit] {
                 self.report(errors::repeated(name, first));
                 if let Some(value) = value {
                     self.value_of_field(kind, field, value);
@@ -290,12 +298,24 @@ impl Checker<'_> {
         }
     }
 
-    fn unknown_field(&mut self, kind: Kind, name: &Name, places: &[Option<Span>]) {
+    /// `told` is where the last one of this body was reported whose way to write it here takes in several: `min` and
+    /// `max`, which are one slip.
+    fn unknown_field(&mut self, kind: Kind, name: &Name, places: &[Option<Span>], told: &mut Option<usize>) {
         let all = self.field_names(kind);
         let all: Vec<&str> = all.iter().map(String::as_str).collect();
         let free: Vec<&str> =
             all.iter().zip(places).filter(|(_, place)| place.is_none()).map(|(name, _)| *name).collect();
-        self.report(errors::unknown_field(&self.kind_name(kind), kind.category(), name, &free, &all));
+        let kind_name = self.kind_name(kind);
+        let diagnostic = errors::unknown_field(&kind_name, kind.category(), name, &free, &all);
+        let joined =
+            familiar::field(&kind_name, kind.category(), &name.text).is_some_and(|here| !here.same_value);
+        let before = told.filter(|_| joined).and_then(|told| self.diagnostics.get_mut(told));
+        if let Some(before) = before.filter(|before| before.help == diagnostic.help) {
+            *before = before.clone().label(name.span, "nor this one");
+            return;
+        }
+        *told = joined.then_some(self.diagnostics.len());
+        self.report(diagnostic);
     }
 
     /// The field that an unknown name probably means.
@@ -373,7 +393,7 @@ impl Checker<'_> {
             _ => {}
         }
         if let Some(diagnostic) = self.unknown_value(field.ty, value) {
-            self.report(diagnostic);
+            self.report_lost(&self.text(value.span).into(), diagnostic);
             return Expr::invalid(value.span);
         }
         let (checked, ty) = self.infer(value);

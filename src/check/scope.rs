@@ -47,7 +47,7 @@ pub(super) struct Known {
     /// The statement that declares it, by its index in the scope.
     pub(super) item: usize,
     pub(super) used: bool,
-    /// Whether nobody needs to use it: what is drawn, a param of the file that is drawn.
+    /// Whether nobody needs to use it: what is drawn, what an imported file declares.
     pub(super) free: bool,
 }
 
@@ -150,9 +150,7 @@ impl Checker<'_> {
         let mut scope = self.scope(place);
         for (item, statement) in items.iter().enumerate() {
             let (Item::Statement(_), Some(name)) = (statement, statement.name()) else { continue };
-            let free = statement.drawn()
-                || place == Place::Imported && !statement.param()
-                || place == Place::Main && statement.param();
+            let free = statement.drawn() || place == Place::Imported && !statement.param();
             match scope.names.get(&name.text) {
                 Some(&first) => self.report(errors::duplicate(name, Some(&scope.known[first].name))),
                 None => {
@@ -185,6 +183,11 @@ impl Checker<'_> {
         let Some(scope) = self.scopes.pop() else { return };
         for known in scope.known.iter().filter(|known| !known.used && !known.free) {
             self.report(errors::unused(&known.name, &known.ty));
+        }
+        if !self.scopes.is_empty() {
+            for known in &scope.known {
+                self.closed.entry(known.name.text.clone()).or_insert(known.name.span);
+            }
         }
         let by_path = matches!(scope.place, Place::Part | Place::Group | Place::Imported);
         let Some(block) = block.filter(|_| !by_path) else { return };

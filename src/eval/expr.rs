@@ -154,7 +154,7 @@ impl Evaluator<'_> {
                 let (left, right) = (self.number(left), self.number(right));
                 let (left, right) = (left?, right?);
                 let result = arithmetic(*operator, left, right);
-                if result.is_finite() && (!*int || result.abs() <= MAX_INT) {
+                if result.is_finite() && (!*int || result.abs() < MAX_INT) {
                     return Some(result);
                 }
                 self.beyond(*operator, [left, right], result, span)

@@ -64,6 +64,15 @@ fn shape(kind: &str, name: &str) -> Option<Familiar> {
         ("sphere" | "disk" | "cylinder" | "cone" | "paraboloid", "diameter") => {
             rewritten("radius", "`radius` is half of the diameter")
         }
+        ("box", "min" | "max" | "from" | "to" | "corner" | "corner1" | "corner2") => {
+            rewritten("size", "a box stands around `at` with its `size`: `at: (0, 1, 0)m, size: (2, 2, 2)m`")
+        }
+        ("cylinder" | "cone" | "paraboloid", "from" | "to" | "start" | "end" | "base" | "top" | "cap") => {
+            rewritten(
+                "height",
+                "it stands upright around `at` with its `height`, and `place` turns it: `place: turn(z: 30deg)`",
+            )
+        }
         ("box", "width" | "height" | "depth" | "dimensions" | "extent" | "extents") => {
             rewritten("size", "`size` is width, height and depth together: `size: (1, 2, 3)m`")
         }

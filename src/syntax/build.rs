@@ -216,14 +216,21 @@ impl<'t> Builder<'t> {
                 Rule::semicolon => self.semicolon(&pair),
                 Rule::crowded if explained => muted = Some(self.reported()),
                 Rule::crowded => self.crowded(&pair),
-                Rule::extra | Rule::decimal if explained || explained_value || self.unbraced.get() => {}
+                Rule::extra | Rule::decimal | Rule::listed
+                    if explained || explained_value || self.unbraced.get() => {}
+                Rule::listed => {
+                    self.listed(&pair, entries.last());
+                    entries.last_mut().into_iter().for_each(spoil);
+                }
                 Rule::decimal => {
                     if self.decimal(&pair) {
                         entries.last_mut().into_iter().for_each(spoil);
                     }
                 }
                 Rule::extra => {
-                    self.unexpected(&pair, errors::unexpected_extra);
+                    if !self.long_unit(&pair) {
+                        self.unexpected(&pair, errors::unexpected_extra);
+                    }
                     entries.last_mut().into_iter().for_each(spoil);
                 }
                 Rule::stray => self.stray(&pair),
@@ -407,6 +414,11 @@ impl<'t> Builder<'t> {
             return (Entry::Broken(Broken { name, span }), 0);
         };
         if let Some(name) = name.as_ref().filter(|name| is_reserved(&name.text)) {
+            // `while true { … }`
+            if let Some(habit) = errors::habit(&word.text, word.span) {
+                self.report(habit);
+                return (Entry::Broken(Broken { name: None, span }), 0);
+            }
             self.report(errors::reserved(&name.text, name.span));
         }
         self.checked(self.plain(StatementKind::Thing { name, construct }, span), depth, span)

@@ -75,6 +75,13 @@ impl Sink {
         true
     }
 
+    /// Whether a place lies in values of which it was said that they have no parentheses.
+    pub(super) fn tells_of_components(&self, place: Span) -> bool {
+        self.told.iter().any(|diagnostic| {
+            diagnostic.message == BARE_COMPONENTS && diagnostic.primary.span.contains(place)
+        })
+    }
+
     /// What was collected, in the order of the text, with each place where it was written.
     pub(super) fn into_sorted(mut self, written: impl Fn(Span) -> Span) -> Vec<Diagnostic> {
         self.told.extend(semicolons(&self.semicolons));
@@ -142,6 +149,7 @@ pub(super) fn unexpected_extra(token: &str, span: Span) -> Diagnostic {
         "else" | "elif" | "elseif" | "elsif" => {
             diagnostic.help(format!("`{token}` belongs to an `if` before it: `if … {{ … }} else {{ … }}`"))
         }
+        "@" => diagnostic.help("a mark stands before what it is about: `@off sphere { … }`"),
         ":" => diagnostic.help("one `:` stands between a field's name and its value"),
         _ => diagnostic.help("end the entry with a comma or a new line, or put an operator between the two"),
     }
@@ -237,7 +245,7 @@ pub(super) fn reserved_value(word: &str, span: Span) -> Diagnostic {
 pub(super) fn missing_value(before: &str, span: Span) -> Diagnostic {
     let message = match before {
         "" => "a value is missing".to_string(),
-        before => format!("a value is missing after `{before}`"),
+        before => format!("a value is missing after {}", shown(before)),
     };
     Diagnostic::new(Code::E0001, message, span).at("a value belongs here")
 }
@@ -263,12 +271,12 @@ pub(super) fn missing_member(span: Span) -> Diagnostic {
         .help("name the part that is meant: `ball.radius`")
 }
 
-/// Two entries on a line.
-pub(super) fn crowded(word: &str, span: Span) -> Diagnostic {
+/// Two entries on a line; `edit` is what is between them.
+pub(super) fn crowded(word: &str, span: Span, edit: Span) -> Diagnostic {
     unexpected(word, span)
         .at("begins something new on the same line")
         .help("put a comma or a new line before it")
-        .fix(span.before(), ", ")
+        .fix(edit, ", ")
 }
 
 /// A name at the top level, and nothing more.
@@ -458,11 +466,11 @@ pub(super) fn angle_brackets(span: Span, open: Span, close: Span) -> Diagnostic 
         .fix(close, ")")
 }
 
-/// `a..b`. `edit` is what `to` takes the place of, the white space around the points included. How a range without
-/// its end would be written is not certain.
+/// `a..b`. `edit` is what `to` takes the place of, the white space around the points included. Languages differ in
+/// whether `..` and `...` include the end, so only `..=` is certain.
 pub(super) fn dots(dots: &str, span: Span, edit: Span) -> Diagnostic {
     let diagnostic = Diagnostic::new(Code::E0007, format!("a range is not written with `{dots}`"), span)
         .at("`to` is wanted")
-        .help("write `a to b`, which includes both ends");
-    if dots == "..<" { diagnostic } else { diagnostic.fix(edit, " to ") }
+        .help("write `a to b`, which includes both ends, or `range(a, b)`, which leaves out `b`");
+    if dots == "..=" { diagnostic.fix(edit, " to ") } else { diagnostic }
 }

@@ -109,12 +109,15 @@ fn strays(entries: &[ast::Entry], strays: &[cut::Stray], sink: &mut errors::Sink
         let place = stray.span.start;
         let before = entries.partition_point(|entry| entry.start() < place);
         let lost = entries[..before].iter().rev().find(|entry| !matches!(entry, ast::Entry::Field(_)));
-        let explained = match lost {
-            Some(ast::Entry::Broken(broken)) if stray.closer == '}' && broken.name.is_some() => {
-                sink.label(broken.span, stray.span, "closes what was not opened")
-            }
-            _ => false,
-        };
+        // It closes values whose opening parenthesis was missed.
+        let listed = stray.closer == ')' && sink.tells_of_components(stray.span);
+        let explained = listed
+            || match lost {
+                Some(ast::Entry::Broken(broken)) if stray.closer == '}' && broken.name.is_some() => {
+                    sink.label(broken.span, stray.span, "closes what was not opened")
+                }
+                _ => false,
+            };
         if !explained {
             sink.push(errors::stray_closer(stray.span, stray.closer));
         }

@@ -116,6 +116,16 @@ fn infix(builder: &Builder, left: Deep<Expr>, operator: &Node, right: Deep<Expr>
     {
         let function = if rule == Rule::foreign_power { "pow" } else { "mod" };
         let sign = operator.as_str();
+        if let (
+            ExprKind::Quantity { unit, .. } | ExprKind::Scaled { unit, .. },
+            ExprKind::Number { value, int: true },
+            Rule::foreign_power,
+        ) = (&left.kind, &right.kind, rule)
+        {
+            let edit = Span { start: left.span.end, end: right.span.start, ..at };
+            builder.report(errors::power_of_unit(sign, &unit.text, *value, at, edit));
+            return invalid(span);
+        }
         builder.report(errors::operator_for_function(sign, function, at, left.span, right.span));
         return invalid(span);
     }
@@ -402,6 +412,9 @@ fn scaled(builder: &Builder, value: Expr, depth: usize, unit: Option<Name>, span
 
 // --- Literals -----------------------------------------------------------------------------------------------
 
+/// From here on not every whole number is one that is computed with: 2^53.
+const INEXACT: f64 = 9_007_199_254_740_992.0;
+
 fn literal(builder: &Builder, pair: Node) -> ExprKind {
     let (all, span) = (pair.as_str(), builder.span(&pair));
     let mut inner = pair.into_inner();
@@ -417,9 +430,14 @@ fn literal(builder: &Builder, pair: Node) -> ExprKind {
         builder.report(errors::huge_number(number, span));
         return ExprKind::Invalid;
     }
+    let int = number.bytes().all(|b| b.is_ascii_digit() || b == b'_');
     match unit {
         Some(unit) => ExprKind::Quantity { value, unit: unit_name(builder, unit) },
-        None => ExprKind::Number { value, int: number.bytes().all(|b| b.is_ascii_digit() || b == b'_') },
+        None if int && value >= INEXACT => {
+            builder.report(errors::inexact_number(number, span));
+            ExprKind::Invalid
+        }
+        None => ExprKind::Number { value, int },
     }
 }
 

@@ -61,7 +61,11 @@ impl Cutter<'_> {
                 self.pop(1);
             }
             _ => {
-                self.out.sink.push(errors::stray_closer(place, char::from(closer)));
+                let closer = char::from(closer);
+                match self.splits {
+                    true => self.out.strays.push(Stray { span: place, closer, forgiven: false }),
+                    false => self.out.sink.push(errors::stray_closer(place, closer)),
+                }
                 self.edits.push((self.at..self.at + 1, b' '));
             }
         }
