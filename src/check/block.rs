@@ -204,6 +204,10 @@ impl<'a> Checker<'a> {
                 Type::Invalid
             }
         };
+        if body.span.range().is_empty() {
+            // Its variable counts as declared around it, where its body probably stands.
+            return StatementKind::Invalid;
+        }
         let item = if item == Type::Scalar(Element::Zero) { Type::Scalar(Element::Int) } else { item };
         let mut scope = self.scope(Place::Parameters);
         let dim = match item {

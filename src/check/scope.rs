@@ -84,6 +84,18 @@ impl<'t> Item<'t> {
         }
     }
 
+    /// The name that it would declare here, or inside, if it were understood: that of a loop without a body too, since
+    /// what stands behind it is probably the body.
+    fn lost_name(&self) -> Option<&'t Name> {
+        match self {
+            Item::Broken(broken) => broken.name.as_ref(),
+            Item::Statement(ast::Statement { kind: Tree::For { variable, body, .. }, .. }) => {
+                body.span.range().is_empty().then_some(variable)
+            }
+            Item::Statement(_) | Item::Rows(_) => None,
+        }
+    }
+
     /// Where it begins.
     pub(super) fn start(&self) -> u32 {
         match self {
@@ -166,7 +178,7 @@ impl Checker<'_> {
         }
         // A broken item's name counts as declared where nothing else declares it: its slip is one error.
         for (item, statement) in items.iter().enumerate() {
-            let (Item::Broken(_), Some(name)) = (statement, statement.name()) else { continue };
+            let Some(name) = statement.lost_name() else { continue };
             if self.shadows(name).is_none() && !scope.names.contains_key(&name.text) {
                 scope.names.insert(name.text.clone(), scope.known.len());
                 let slot = self.slot();

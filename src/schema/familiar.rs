@@ -61,7 +61,13 @@ fn placed(name: &str) -> Option<Familiar> {
 
 fn shape(kind: &str, name: &str) -> Option<Familiar> {
     Some(match (kind, name) {
-        ("sphere" | "disk" | "cylinder" | "cone" | "paraboloid", "diameter") => {
+        ("sphere" | "disk" | "cylinder" | "cone" | "paraboloid", "r" | "rad") => {
+            renamed("radius", "the radius is called `radius`")
+        }
+        ("cylinder" | "cone" | "paraboloid", "h" | "length") => {
+            renamed("height", "`height` is along its axis")
+        }
+        ("sphere", "size") | ("sphere" | "disk" | "cylinder" | "cone" | "paraboloid", "d" | "diameter") => {
             rewritten("radius", "`radius` is half of the diameter")
         }
         ("box", "min" | "max" | "from" | "to" | "corner" | "corner1" | "corner2") => {

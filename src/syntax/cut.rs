@@ -277,6 +277,7 @@ impl<'t> Cutter<'t> {
             match byte {
                 b',' if self.base.angled == 0
                     && !self.is_decimal_comma()
+                    && !self.precedes_number()
                     && !self.message_follows()
                     && !self.is_among_variables() =>
                 {

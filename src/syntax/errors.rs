@@ -66,13 +66,18 @@ impl Sink {
         self.semicolons.truncate(held.semicolons);
     }
 
-    /// Adds a label to the one diagnostic that points into a place, if there is one.
-    pub(super) fn label(&mut self, within: Span, place: Span, text: &str) -> bool {
-        let found = self.told.iter_mut().find(|diagnostic| within.contains(diagnostic.primary.span));
-        let Some(diagnostic) = found else { return false };
-        *diagnostic =
-            std::mem::replace(diagnostic, Diagnostic::new(Code::E0001, "", place)).label(place, text);
-        true
+    /// The diagnostics that tell of a missing `{`, each with its place, in the order of the text.
+    pub(super) fn missing_braces(&self) -> Vec<(usize, Span)> {
+        let told = self.told.iter().enumerate();
+        let braces = told.filter(|(_, diagnostic)| statements::misses_brace(diagnostic));
+        let mut found: Vec<(usize, Span)> = braces.map(|(index, told)| (index, told.primary.span)).collect();
+        found.sort_by_key(|(_, place)| place.start);
+        found
+    }
+
+    /// Adds a label to a diagnostic.
+    pub(super) fn label(&mut self, index: usize, place: Span, text: &str) {
+        self.told[index] = self.told[index].clone().label(place, text);
     }
 
     /// Whether a place lies in values of which it was said that they have no parentheses.

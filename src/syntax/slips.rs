@@ -33,6 +33,14 @@ pub(super) fn ends_invalid(entry: &Entry) -> bool {
     }
 }
 
+/// The value of a definition that is a name alone.
+pub(super) fn bare_name(entry: &mut Entry) -> Option<(smol_str::SmolStr, &mut Expr)> {
+    let Entry::Statement(statement) = entry else { return None };
+    let StatementKind::Definition { value, .. } = &mut statement.kind else { return None };
+    let ExprKind::Name(name) = &value.kind else { return None };
+    Some((name.clone(), value))
+}
+
 /// Makes the value invalid with which an entry ends, because more stands behind it: what it was to be is not known.
 /// What stands in a body of its own is looked at all the same.
 pub(super) fn spoil(entry: &mut Entry) {
@@ -132,11 +140,17 @@ impl<'t> Builder<'t> {
     /// `at: 0, 1, 0`, values without parentheses behind a field; behind anything else the first belongs to nothing.
     pub(super) fn listed(&self, pair: &Node, before: Option<&Entry>) {
         let all = self.trimmed(pair);
-        match before {
-            Some(Entry::Field(field)) => {
-                self.report(errors::bare_components(Span { start: field.value.span.start, ..all }));
-            }
-            _ => {
+        let value = match before {
+            Some(Entry::Field(field)) => Some(&field.value),
+            Some(Entry::Statement(statement)) => match &statement.kind {
+                StatementKind::Definition { value, .. } => Some(value),
+                _ => None,
+            },
+            _ => None,
+        };
+        match value {
+            Some(value) => self.report(errors::bare_components(Span { start: value.span.start, ..all })),
+            None => {
                 let rest = pair.as_str()[1..].trim_ascii_start();
                 let start = pair.as_span().end() - rest.len();
                 let token = errors::first_token(rest);
@@ -236,6 +250,10 @@ impl<'t> Builder<'t> {
         } else if let Some(color) = only(&value, Rule::angled_color).filter(|_| !top) {
             let (value, depth) = angled::color(self, color, Some(&name));
             return (Entry::Field(Field { name, value }), depth);
+        } else if !top && self.begins_field(&value) {
+            // `sphere radius: 1m }`
+            self.report(errors::no_brace(&name.text, name.span, value_span));
+            return (Entry::Broken(Broken { name: None, span }), 0);
         } else if !top {
             self.report(errors::missing_colon(&name.text, name.span, value_span));
             let (value, depth) = value::expression(self, value);
@@ -262,6 +280,12 @@ impl<'t> Builder<'t> {
         let apart = name.starts_with(|c: char| c.is_ascii_digit()) || name.contains('-');
         let sound = apart && !name.starts_with('-') && !name.ends_with('-');
         (thing && sound).then(|| errors::no_name(kind, name, self.at(start, start + end)))
+    }
+
+    /// Whether what was taken for a value is the name of a field, with `:` behind it.
+    fn begins_field(&self, value: &Node) -> bool {
+        is_word(value.as_str().trim_end())
+            && self.after(value.as_span().end()).trim_ascii_start().starts_with(':')
     }
 
     /// A statement as other languages have it. Gives what it declares.
@@ -295,6 +319,28 @@ impl<'t> Builder<'t> {
         let ends = if rest.is_empty() { !self.continued() } else { rest.starts_with(['\n', '}', ',', ')']) };
         let replacement = if ends { "" } else { "," };
         self.sink.borrow_mut().push_semicolon(self.span(pair), replacement);
+    }
+
+    /// `let ball = sphere radius: 1m`: whether the brace behind the kind is the slip.
+    pub(super) fn headless(&self, pair: &Node, before: Option<&Entry>) -> bool {
+        let value = match before {
+            Some(Entry::Field(field)) => &field.value,
+            Some(Entry::Statement(statement)) => match &statement.kind {
+                StatementKind::Definition { value, .. } => value,
+                _ => return false,
+            },
+            _ => return false,
+        };
+        let ExprKind::Name(kind) = &value.kind else { return false };
+        let rest = self.after(pair.as_span().start()).trim_ascii_start();
+        let word = errors::first_token(rest);
+        if !is_word(word) || !rest[word.len()..].trim_ascii_start().starts_with(':') || is_reserved(word) {
+            return false;
+        }
+        let start = self.base() + self.text_len() - rest.len();
+        let place = Span::new(value.span.source, start, start + word.len());
+        self.report(errors::no_brace(kind, value.span, place));
+        true
     }
 
     pub(super) fn crowded(&self, pair: &Node) {

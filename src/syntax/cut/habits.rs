@@ -27,6 +27,13 @@ impl Cutter<'_> {
         self.at > 0 && digit(self.at - 1) && digit(self.at + 1)
     }
 
+    /// Whether a number follows a comma at the top level, which begins nothing there: `let p = 0, 1, 0`.
+    pub(super) fn precedes_number(&self) -> bool {
+        let rest = self.text[self.at + 1..].trim_start_matches(BLANKS);
+        let rest = rest.strip_prefix('-').unwrap_or(rest);
+        self.item.is_some() && rest.starts_with(|c: char| c.is_ascii_digit())
+    }
+
     /// Whether a comma at the top level stands between the variables of a loop: `for i, j in list`.
     pub(super) fn is_among_variables(&self) -> bool {
         let Some(head) = self.item.and_then(|start| self.text[start..self.at].strip_prefix("for")) else {

@@ -77,6 +77,15 @@ pub(in crate::syntax) fn missing_block(word: &str, place: Span) -> Diagnostic {
     missing(&format!("the body of this `{word}` is missing"), place, word).at("`{ … }` belongs here")
 }
 
+/// Whether it tells of a `{` that is missing, so that its `}` closes nothing.
+pub(in crate::syntax) fn misses_brace(diagnostic: &Diagnostic) -> bool {
+    let message = &diagnostic.message;
+    diagnostic.code == Code::E0001
+        && (message.starts_with("`{` is missing")
+            || message.starts_with("the body of this")
+            || message.ends_with("has no body"))
+}
+
 /// `part stool = group { … }`
 pub(in crate::syntax) fn part_is_no_value(name: &str, sign: Span) -> Diagnostic {
     unexpected("=", sign)
