@@ -1,5 +1,6 @@
 //! Expressions: their types, and the units of what they compute.
 
+use super::program::Arithmetic;
 use super::types::{Element, NUMBER, Type};
 use super::{Checker, Expr, ExprKind, errors};
 use crate::color;
@@ -290,8 +291,8 @@ impl Checker<'_> {
 /// An operation that gives a value of a type. What gives a number, but for comparisons, is of numbers.
 fn operation(operator: BinaryOp, [left, right]: [Expr; 2], ty: &Type) -> ExprKind {
     let (left, right) = (Box::new(left), Box::new(right));
-    match ty {
-        Type::Scalar(element) => {
+    match (ty, Arithmetic::of(operator)) {
+        (Type::Scalar(element), Some(operator)) => {
             ExprKind::Arithmetic { operator, left, right, int: *element == Element::Int }
         }
         _ => ExprKind::Binary { operator, left, right },

@@ -14,6 +14,7 @@ mod docs;
 mod errors;
 mod format;
 mod items;
+mod literal;
 mod lookalikes;
 mod places;
 mod rows;

@@ -4,7 +4,7 @@
 use super::ast::{Body, Broken, Entry, Expr, ExprKind, Name, Parameter, StatementKind, TypeName};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements as slips};
-use super::value;
+use super::{literal, value};
 use crate::span::Span;
 use pest::iterators::Pairs;
 use smol_str::SmolStr;
@@ -163,7 +163,7 @@ fn part<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> De
 fn import<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> Deep<StatementKind> {
     let written = parts.next().expect("an import has a path");
     let place = builder.trimmed(&written);
-    let path = Name { text: value::text(builder, &written), span: place };
+    let path = Name { text: literal::text(builder, &written), span: place };
     let name = match (parts.next(), parts.next()) {
         (Some(_), Some(name)) => declared(builder, Some(name)),
         (given, _) => {
