@@ -198,14 +198,11 @@ impl<'t> Cutter<'t> {
 
     /// Whether the line goes on with the other choice of an `if` whose body is still open.
     fn shows_unclosed_choice(&self) -> bool {
-        let Some(level) = self.levels.last().filter(|level| level.bracket == b'{' && self.layout) else {
-            return false;
-        };
+        let open = self.levels.last().filter(|level| level.bracket == b'{' && level.indent == self.indent);
+        let chooses = self.layout && matches!(self.word(self.at), "else" | "elif" | "elseif" | "elsif");
+        let Some(level) = open.filter(|_| chooses) else { return false };
         let line = self.text[..level.at].rsplit('\n').next().unwrap_or("").trim_ascii_start();
-        let chooses = line.starts_with("if ") || line.starts_with("else ") || line.starts_with("} else ");
-        chooses
-            && level.indent == self.indent
-            && matches!(self.word(self.at), "else" | "elif" | "elseif" | "elsif")
+        line.starts_with("if ") || line.starts_with("else ") || line.starts_with("} else ")
     }
 
     /// Whether the line begins what can stand in a body and not in the parentheses around it.
