@@ -26,6 +26,7 @@ mod init;
 mod fmt;
 mod input;
 mod interrupt;
+mod live;
 mod manual;
 mod messages;
 mod progress;
