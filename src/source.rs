@@ -72,6 +72,21 @@ impl Sources {
         &self.all[id.0 as usize]
     }
 
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.all.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    /// Each with its id.
+    pub fn iter(&self) -> impl Iterator<Item = (SourceId, &Source)> {
+        (0..).map(SourceId).zip(&self.all)
+    }
+
     /// The text of a span.
     pub fn text(&self, span: Span) -> &str {
         self.all.get(span.source.0 as usize).and_then(|source| source.text.get(span.range())).unwrap_or("")
