@@ -13,9 +13,12 @@
 //! | [`engine`] | what a new text leads to |
 //! | [`desk`] | where work waits |
 //! | [`painter`], [`work`] | tracing the newest scene, step by step |
+//! | [`answers`] | why a pixel looks as it does, and where a place of the text is seen |
 //! | [`writer`] | pictures to files, in the background |
+//! | [`said`] | what the compiler says, as a page shows it |
 //! | [`hub`] | what everybody may know, and ask |
 
+mod answers;
 mod desk;
 mod engine;
 pub mod hub;

@@ -1,6 +1,7 @@
 //! Traces the newest scene, progressively, and keeps what stays good.
 
-use super::desk::{Desk, Job, Question};
+use super::answers::answer_all;
+use super::desk::{Desk, Job};
 use super::hub::{Aim, Frame, Hub, Shown, State};
 use super::work::{Step, Work};
 use super::writer::{Page, Writer};
@@ -87,15 +88,13 @@ impl<'a> Painting<'a> {
         let kept = self.job.change.as_ref().is_some_and(|change| change.paths == Paths::Kept);
         let canvas = self.left.canvas.take().filter(|_| kept);
         self.say_reason(canvas.is_some(), tracer.keeps_structure());
+        let prepass = canvas.as_ref().map_or_else(|| tracer.prepass(), |canvas| canvas.prepass);
         std::thread::scope(|scope| {
-            let tracer = &tracer;
-            let (desk, job) = (&self.painter.desk, self.job);
-            scope.spawn(move || {
-                while let Some(question) = desk.question() {
-                    answer(tracer, job, question);
-                }
-            });
-            self.paint(tracer, canvas);
+            let (tracer, prepass) = (&tracer, &prepass);
+            let Painter { desk, hub, .. } = self.painter;
+            let job = self.job;
+            scope.spawn(move || answer_all(desk, hub, tracer, prepass, job));
+            self.paint(tracer, *prepass, canvas);
         });
         self.left.structure = Some(tracer.into_structure());
         self.left
@@ -119,14 +118,14 @@ impl<'a> Painting<'a> {
     }
 
     /// Traces until a new job comes.
-    fn paint(&mut self, tracer: &Tracer, canvas: Option<Canvas>) {
+    fn paint(&mut self, tracer: &Tracer, prepass: Prepass, canvas: Option<Canvas>) {
         let start = Instant::now();
         let desk = &self.painter.desk;
         let fresh = canvas.is_none();
         let mut canvas = match canvas {
             Some(canvas) => canvas,
             None => {
-                let Some(canvas) = self.begin(tracer) else { return };
+                let Some(canvas) = self.begin(tracer, prepass) else { return };
                 canvas
             }
         };
@@ -161,10 +160,9 @@ impl<'a> Painting<'a> {
     }
 
     /// Takes a first look. None if a new job comes before it is done.
-    fn begin(&mut self, tracer: &Tracer) -> Option<Canvas> {
+    fn begin(&mut self, tracer: &Tracer, prepass: Prepass) -> Option<Canvas> {
         let start = Instant::now();
         let control = self.painter.desk.begin()?;
-        let prepass = tracer.prepass();
         self.say_shown(&prepass);
         let look = tracer.look(LOOK, &control).ok()?;
         let pixel = |seen: Option<rt_lang::color::Rgb>| match seen {
@@ -311,13 +309,4 @@ fn pixels(canvas: &Canvas, [width, height]: [u32; 2]) -> Vec<[f32; 5]> {
         }
     };
     (0..height).into_par_iter().flat_map_iter(row).map(pixel).collect()
-}
-
-/// Answers a question. Whoever asked may be gone.
-fn answer(tracer: &Tracer, job: &Job, question: Question) {
-    let _ = (tracer, job);
-    match question {
-        Question::Why { reply, .. } => drop(reply.send(Err("not yet".into()))),
-        Question::Light { reply, .. } => drop(reply.send(None)),
-    }
 }
