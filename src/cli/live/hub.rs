@@ -281,8 +281,11 @@ impl Hub {
     }
 
     /// Shows a picture.
-    pub fn show(&self, frame: Frame) {
-        self.lock().frame = Some(Arc::new(frame));
+    pub fn show(&self, frame: Arc<Frame>) {
+        let mut known = self.lock();
+        Arc::make_mut(&mut known.status).remixed = frame.remixed;
+        known.frame = Some(frame);
+        drop(known);
         self.tell();
     }
 
