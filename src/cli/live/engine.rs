@@ -166,7 +166,8 @@ impl Engine {
         self.again = None;
         let Engine { reader, desk, set, .. } = self;
         match desk.reading(|| reader.look(set, anyway)) {
-            Seen::Same => {}
+            // What lies on the way to a missing file may have come.
+            Seen::Same => self.watcher.follow(self.reader.files()),
             Seen::Later(wait) => self.again = Some(Instant::now() + wait),
             Seen::New(loaded) => {
                 self.watcher.follow(self.reader.files());
