@@ -39,9 +39,12 @@ const EDGES: &[(&str, &[&str])] = &[
     ("render", &["math", "color", "develop", "asset", "scene"]),
     ("output", &["math", "color", "develop", "scene"]),
     ("explain", &["diagnostic"]),
+    ("change", &["span", "color", "scene", "syntax"]),
     ("inventory", &["source", "schema", "check", "eval", "scene"]),
     ("mend", &["span", "diagnostic"]),
     ("report", &["span", "source", "diagnostic", "explain"]),
+    // It names what the tracer found, by what lowering kept beside the scene.
+    ("why", &["span", "source", "color", "eval", "scene", "lower", "render"]),
 ];
 
 #[test]

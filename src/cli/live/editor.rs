@@ -1,6 +1,6 @@
 //! How a place in a file is opened: by a link, or by a command on this machine.
 
-use super::super::{Problem, plain};
+use super::super::Problem;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
@@ -97,22 +97,6 @@ fn put(word: &str, values: &[(&str, &str)]) -> String {
         rest = &rest[first.len_utf8()..];
     }
     text
-}
-
-/// Opens the page in the browser.
-pub fn browse(url: &str) -> Result<(), Problem> {
-    let mut command = if cfg!(target_os = "macos") {
-        Command::new("open")
-    } else if cfg!(target_os = "windows") {
-        Command::new("explorer")
-    } else {
-        Command::new("xdg-open")
-    };
-    let program = command.get_program().to_string_lossy().into_owned();
-    spawn(command.arg(url)).map_err(|error| {
-        Problem::new(format!("`{program}` does not start: {}", plain(&error)))
-            .help("open the printed address yourself")
-    })
 }
 
 /// Starts a program that nobody waits for but a thread, so that none is left behind as a zombie.

@@ -5,8 +5,9 @@
 
 use rt_lang::scene::Tonemap;
 use serde::Serialize;
+use std::sync::mpsc;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use tokio::sync::{mpsc, oneshot, watch};
+use tokio::sync::{oneshot, watch};
 
 /// A picture at some moment.
 #[derive(Debug)]
@@ -229,7 +230,7 @@ pub enum Request {
 pub struct Hub {
     known: Mutex<Known>,
     version: watch::Sender<u64>,
-    requests: mpsc::UnboundedSender<Request>,
+    requests: mpsc::Sender<Request>,
 }
 
 #[derive(Debug, Default)]
@@ -240,8 +241,8 @@ struct Known {
 
 impl Hub {
     /// A place with nothing known yet, and the end at which requests arrive.
-    pub fn new() -> (Arc<Hub>, mpsc::UnboundedReceiver<Request>) {
-        let (requests, arriving) = mpsc::unbounded_channel();
+    pub fn new() -> (Arc<Hub>, mpsc::Receiver<Request>) {
+        let (requests, arriving) = mpsc::channel();
         let hub = Hub { known: Mutex::default(), version: watch::Sender::new(0), requests };
         (Arc::new(hub), arriving)
     }

@@ -8,6 +8,7 @@ use super::save::Saved;
 use super::token::is_token;
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, Method, StatusCode, header};
+use std::net::SocketAddr;
 
 /// Knows who may ask.
 pub struct Guard {
@@ -67,9 +68,9 @@ const ASSETS: &[Asset] = assets! {
 };
 
 impl Guard {
-    /// For a server on this port with this secret.
-    pub fn new(port: u16, token: String) -> Guard {
-        Guard { hosts: [format!("127.0.0.1:{port}"), format!("localhost:{port}")], token }
+    /// For a server at this address with this secret.
+    pub fn new(address: SocketAddr, token: String) -> Guard {
+        Guard { hosts: [address.to_string(), format!("localhost:{}", address.port())], token }
     }
 
     /// What is wished, if it may be.
@@ -139,12 +140,16 @@ mod tests {
 
     const TOKEN: &str = "00112233445566778899aabbccddeeff";
 
+    fn guard() -> Guard {
+        Guard::new(SocketAddr::from(([127, 0, 0, 1], 4877)), TOKEN.into())
+    }
+
     fn ask(path: &str, headers: &[(&str, &str)]) -> Result<Wish, StatusCode> {
         let mut request = Request::builder().uri(path);
         for (name, value) in headers {
             request = request.header(*name, *value);
         }
-        Guard::new(4877, TOKEN.into()).wish(&request.body(()).unwrap().into_parts().0)
+        guard().wish(&request.body(()).unwrap().into_parts().0)
     }
 
     fn at(path: &str) -> Result<Wish, StatusCode> {
@@ -222,6 +227,6 @@ mod tests {
         let mut parts =
             Request::builder().uri(format!("/{TOKEN}/")).method("POST").body(()).unwrap().into_parts().0;
         parts.headers.insert(header::HOST, "127.0.0.1:4877".parse().unwrap());
-        assert_eq!(Guard::new(4877, TOKEN.into()).wish(&parts), Err(StatusCode::METHOD_NOT_ALLOWED));
+        assert_eq!(guard().wish(&parts), Err(StatusCode::METHOD_NOT_ALLOWED));
     }
 }

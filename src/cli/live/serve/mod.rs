@@ -18,8 +18,7 @@ mod socket;
 mod tiles;
 mod token;
 
-use super::super::Problem;
-use super::super::plain;
+use super::super::{Problem, plain};
 use super::editor::Editor;
 use super::hub::Hub;
 use axum::Router;
@@ -48,13 +47,6 @@ pub struct Wanted {
     pub editor: Editor,
 }
 
-/// A page that is served until the process ends.
-#[derive(Debug)]
-pub struct Served {
-    /// Its address, secret included.
-    pub url: String,
-}
-
 /// What all pages share.
 struct Shared {
     hub: Arc<Hub>,
@@ -64,8 +56,8 @@ struct Shared {
     seats: Arc<Semaphore>,
 }
 
-/// Serves the page from a thread of its own.
-pub fn start(hub: Arc<Hub>, wanted: Wanted) -> Result<Served, Problem> {
+/// Serves the page from a thread of its own until the process ends. Gives its address, secret included.
+pub fn start(hub: Arc<Hub>, wanted: Wanted) -> Result<String, Problem> {
     let listener = listen(wanted.address)?;
     let address = listener.local_addr().map_err(|error| refused(wanted.address, &error))?;
     let token = token::for_port(address.port())
@@ -73,7 +65,7 @@ pub fn start(hub: Arc<Hub>, wanted: Wanted) -> Result<Served, Problem> {
     let url = format!("http://{address}/{token}/");
     let shared = Arc::new(Shared {
         hub,
-        guard: Guard::new(address.port(), token),
+        guard: Guard::new(address, token),
         editor: wanted.editor,
         seats: Arc::new(Semaphore::new(MOST_PAGES)),
     });
@@ -95,7 +87,7 @@ pub fn start(hub: Arc<Hub>, wanted: Wanted) -> Result<Served, Problem> {
         .name("preview".into())
         .spawn(serve)
         .map_err(|error| refused(address, &error))?;
-    Ok(Served { url })
+    Ok(url)
 }
 
 /// Listens where it is asked for, or on the usual port, or on a free one.
