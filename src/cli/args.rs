@@ -263,7 +263,7 @@ pub struct Watch {
         long,
         value_name = "TEMPLATE",
         requires = "serve",
-        default_value = "vscode://file/{file}:{line}:{column}"
+        default_value = "vscode://file{file}:{line}:{column}"
     )]
     pub editor_url: String,
 

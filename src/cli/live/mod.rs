@@ -17,14 +17,18 @@
 //! | [`writer`] | pictures to files, in the background |
 //! | [`said`] | what the compiler says, as a page shows it |
 //! | [`hub`] | what everybody may know, and ask |
+//! | [`serve`] | the page |
+//! | [`editor`] | how a place in a file is opened |
 
 mod answers;
 mod desk;
+mod editor;
 mod engine;
 pub mod hub;
 mod painter;
 mod reader;
 mod said;
+mod serve;
 mod watcher;
 mod work;
 mod writer;
@@ -33,15 +37,17 @@ use super::args::Watch;
 use super::build::{refuse_idle_depth, refuse_inputs_as_outputs, targets};
 use super::input::is_standard;
 use super::interrupt::Interrupt;
-use super::target::Target;
+use super::target::{Target, print};
 use super::terminal::Terminal;
-use super::{Exit, Problem, build};
+use super::{Exit, Problem, build, plain};
 use desk::Desk;
+use editor::Editor;
 use engine::Engine;
 use hub::{Hub, Request};
 use painter::Painter;
 use rayon::ThreadPoolBuilder;
 use reader::Reader;
+use serve::Wanted;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -76,10 +82,26 @@ pub fn run(arguments: &Watch, terminal: Terminal, interrupt: &Interrupt) -> Resu
     };
     let started = std::thread::Builder::new().name("paint".into()).spawn(move || painter.run());
     started.map_err(|error| Problem::new(format!("cannot start a thread: {error}")))?;
+    if let Some(address) = arguments.serve {
+        let editor = Editor::new(arguments.editor_url.clone(), arguments.open_with)?;
+        show(hub.clone(), Wanted { address, editor }, arguments.open)?;
+    }
     let told = hub.clone();
     let watcher = Watcher::new(arguments.poll.map(Duration::from_millis), move || told.ask(Request::Look))?;
     let reader = Reader::new(&arguments.scene, &arguments.reading, arguments.taking.overrides(), &own);
     Engine::new(arguments, reader, watcher, desk, hub, interrupt.clone(), terminal).run(&requests)
+}
+
+/// Serves the page, and says where.
+fn show(hub: Arc<Hub>, wanted: Wanted, open: bool) -> Result<(), Problem> {
+    let url = serve::start(hub, wanted)?;
+    print(format!("{url}\n").as_bytes())?;
+    if open {
+        let problem = |error| Problem::new(format!("no browser opens: {}", plain(&error)));
+        open::that_detached(&url)
+            .map_err(|error| problem(error).help("open the printed address yourself"))?;
+    }
+    Ok(())
 }
 
 /// Where the picture goes. Everything that can be seen to be wrong before a file is read is found here.
