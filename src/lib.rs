@@ -30,6 +30,7 @@
 //! | [`inventory`] | what stands in a picture, counted | how it is shown |
 //! | [`mend`] | applying the edits that diagnostics offer | files |
 //! | [`report`] | diagnostics to text, for a person or a program | what they are about |
+//! | [`why`] | what a pixel shows and where its light comes from, by places in the source | how it is shown |
 
 pub mod asset;
 mod allow;
@@ -57,6 +58,7 @@ pub mod source;
 pub mod span;
 pub mod syntax;
 pub mod units;
+pub mod why;
 
 use check::Setting;
 use diagnostic::{Code, Diagnostic};
@@ -64,10 +66,11 @@ use eval::{Limits, Origins, Thing, Things};
 use files::{Contents, Files};
 use import::Imported;
 use inventory::Inventory;
-use lower::{Meshes, Overrides, Places};
+use lower::{Marks, Meshes, Overrides, Places};
 use scene::Scene;
 use source::Sources;
 use span::{SourceId, Span};
+use why::Provenance;
 
 /// What compiling a source gives.
 #[derive(Debug)]
@@ -84,6 +87,8 @@ pub struct Compiled {
     pub contents: Contents,
     /// What stands in the picture.
     pub inventory: Inventory,
+    /// Where those parts of the scene came from that are no primitives.
+    pub marks: Marks,
     /// Where settings stand that only a finished picture can judge.
     places: Places,
     /// The source that was compiled.
@@ -169,6 +174,7 @@ fn stages(
         contents: lowered.contents,
         main,
         allows: program.allows,
+        marks: lowered.marks,
         places: lowered.places,
     }
 }
@@ -185,8 +191,15 @@ impl Compiled {
             main: diagnostic.primary.span.source,
             diagnostics: vec![diagnostic],
             allows: vec![],
+            marks: Marks::default(),
             places: Places::default(),
         }
+    }
+
+    /// The scene with what tells where its parts came from; none where there was an error.
+    pub fn provenance<'a>(&'a self, sources: &'a Sources) -> Option<Provenance<'a>> {
+        let (origins, marks) = (&self.origins, &self.marks);
+        self.scene.as_ref().map(|scene| Provenance { scene, origins, marks, sources })
     }
 
     /// What a finished picture gives cause to say, unless the source allows it.

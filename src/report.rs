@@ -135,7 +135,7 @@ fn uses(chain: &[Use], sources: &Sources) -> String {
     let line = |(Use { span, turn }, count): &(&Use, usize)| {
         let times = if *count > 1 { format!(", {count} levels") } else { String::new() };
         let turn = turn.as_ref().map_or(String::new(), |turn| format!(" at `{}`", sentence(turn)));
-        format!("  in `{}`{turn}, {}{times}\n", head(sources.text(*span)), at(*span, sources))
+        format!("  in `{}`{turn}, {}{times}\n", head(sources.head(*span)), at(*span, sources))
     };
     if runs.len() <= MOST_USES {
         return runs.iter().map(line).collect();
@@ -181,19 +181,13 @@ fn at(span: Span, sources: &Sources) -> String {
     format!("{}:{line}:{column}", printable(&source.name))
 }
 
-/// The head of a statement, enough to know it by: up to its `{` or the end of the line.
+/// The head of a statement, enough to know it by.
 fn head(text: &str) -> String {
     const MOST: usize = 40;
-    let text = first_line(text);
-    let text = text[..text.find('{').unwrap_or(text.len())].trim();
     match text.char_indices().nth(MOST) {
         Some((cut, _)) => printable(&text[..cut]) + "…",
         None => printable(text),
     }
-}
-
-fn first_line(text: &str) -> &str {
-    text[..text.find(['\n', '\r']).unwrap_or(text.len())].trim()
 }
 
 /// A sentence about a source, [`printable`], with what is too long to be read in it cut in its middle: it may

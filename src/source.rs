@@ -2,6 +2,7 @@
 
 use crate::files::FilePath;
 use crate::span::{SourceId, Span};
+use serde::Serialize;
 
 /// One source text with the name a person knows it by.
 #[derive(Clone, Debug)]
@@ -49,6 +50,28 @@ impl Source {
     }
 }
 
+/// A range of a file, as programs are told of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Place<'s> {
+    /// The name of the source.
+    pub file: &'s str,
+    /// Where it begins.
+    pub start: Point,
+    /// Behind its last character.
+    pub end: Point,
+}
+
+/// A place between two characters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Point {
+    /// Bytes before it.
+    pub byte: u32,
+    /// From 1.
+    pub line: usize,
+    /// In characters, from 1.
+    pub column: usize,
+}
+
 /// The source texts of one compilation.
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
@@ -70,6 +93,30 @@ impl Sources {
     /// The source with this id, which came from [`Sources::add`] of this table.
     pub fn get(&self, id: SourceId) -> &Source {
         &self.all[id.0 as usize]
+    }
+
+    /// Where a span lies, as programs are told of it.
+    pub fn place_of(&self, span: Span) -> Place<'_> {
+        let source = self.get(span.source);
+        let point = |byte: u32| {
+            // A place may name more than there is, where only the beginning of a file was kept.
+            let byte = byte.min(source.text.len() as u32);
+            let (line, column) = source.line_column(source.text.floor_char_boundary(byte as usize));
+            Point { byte, line, column }
+        };
+        Place { file: &source.name, start: point(span.start), end: point(span.end) }
+    }
+
+    /// The first line of the text of a span, without blanks around it.
+    pub fn first_line(&self, span: Span) -> &str {
+        let text = self.text(span);
+        text[..text.find(['\n', '\r']).unwrap_or(text.len())].trim()
+    }
+
+    /// The head of a statement: its first line up to the `{`.
+    pub fn head(&self, span: Span) -> &str {
+        let line = self.first_line(span);
+        line[..line.find('{').unwrap_or(line.len())].trim()
     }
 
     /// The text of a span.

@@ -42,6 +42,8 @@ const EDGES: &[(&str, &[&str])] = &[
     ("inventory", &["source", "schema", "check", "eval", "scene"]),
     ("mend", &["span", "diagnostic"]),
     ("report", &["span", "source", "diagnostic", "explain"]),
+    // It names what the tracer found, by what lowering kept beside the scene.
+    ("why", &["span", "source", "color", "eval", "scene", "lower", "render"]),
 ];
 
 #[test]

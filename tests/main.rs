@@ -20,3 +20,4 @@ mod oracle;
 mod parse;
 mod pictures;
 mod scenes;
+mod why;

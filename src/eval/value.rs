@@ -222,6 +222,17 @@ impl<'t> Fields<'t> {
         self.site.written.name.as_ref()
     }
 
+    /// The name by which it is known: its own, or else that of the nearest prototype that has one.
+    pub fn known_as(self) -> Option<&'t SmolStr> {
+        let mut made = self;
+        loop {
+            match made.name() {
+                Some(name) => return Some(name),
+                None => made = made.site.base.as_ref()?.fields(),
+            }
+        }
+    }
+
     /// Whether no field has an error, and none that must be given is missing.
     pub fn is_sound(self) -> bool {
         let mut given = 0;

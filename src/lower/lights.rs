@@ -33,6 +33,7 @@ impl Lowering<'_> {
                     return self.report(self.used_at(thing, errors::glows_beyond(made.span())));
                 }
                 let material = self.materials.add(Material::Emitter { radiance, pattern: None });
+                self.out.marks.materials.note(self.primitives.len(), None);
                 self.add_surface(shape, material, None, thing.origin);
             }
             Err(diagnostic) => self.report(self.used_at(thing, *diagnostic)),

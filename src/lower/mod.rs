@@ -5,6 +5,7 @@ mod camera;
 mod errors;
 mod lights;
 mod material;
+mod marks;
 mod mesh;
 mod shape;
 mod sky;
@@ -22,6 +23,7 @@ use crate::scene::{
 use crate::schema::{self, Category, DEFAULT_SAMPLES, KindId, light, render, sun};
 use crate::source::Sources;
 use crate::span::{SourceId, Span};
+pub use marks::MaterialMarks;
 use material::Materials;
 pub use mesh::Meshes;
 use texture::Textures;
@@ -78,6 +80,8 @@ pub struct Marks {
     pub focus: Option<Span>,
     /// By the index of a light in the scene.
     pub lights: Vec<Option<OriginId>>,
+    /// What primitives are made of.
+    pub materials: MaterialMarks,
 }
 
 /// Where settings stand that only a finished picture can judge; none where the source does not give them.
@@ -291,6 +295,7 @@ impl<'a> Lowering<'a> {
             }
             frame = Some(FrameId(self.frames.len() as u32 - 1));
         }
+        self.out.marks.materials.note(self.primitives.len(), thing.material.as_ref());
         self.add_surface(shape, material, frame, thing.origin);
     }
 

@@ -55,7 +55,7 @@ impl Window {
     }
 
     /// The position of a pixel of the full picture in row-major storage of the window.
-    fn index(&self, x: u32, y: u32) -> usize {
+    pub(super) fn index(&self, x: u32, y: u32) -> usize {
         debug_assert!(x >= self.x && x - self.x < self.width && y >= self.y && y - self.y < self.height);
         (y - self.y) as usize * self.width as usize + (x - self.x) as usize
     }
@@ -78,8 +78,7 @@ impl Pixel {
     #[inline]
     pub fn add(&mut self, radiance: Rgb, scale: f64) {
         debug_assert!(radiance.is_finite(), "a path carries {radiance}");
-        let fixed = |v: f64| nearest((v * scale).clamp(-MOST_FIXED, MOST_FIXED));
-        let [r, g, b] = [fixed(radiance.x), fixed(radiance.y), fixed(radiance.z)];
+        let [r, g, b] = fixed(radiance, scale);
         self.sum[0] += r;
         self.sum[1] += g;
         self.sum[2] += b;
@@ -110,7 +109,7 @@ impl Pixel {
 
     /// By the weights of the very samples there are, so that it is exactly 1 or 0 where all of them agree. A filter
     /// with negative weights may lead beyond these, and is cut.
-    fn alpha(&self) -> f64 {
+    pub(super) fn alpha(&self) -> f64 {
         match (self.covered, self.open) {
             (_, 0) => 1.0,
             (0, _) => 0.0,
@@ -121,12 +120,16 @@ impl Pixel {
         }
     }
 
-    fn mean(&self, scale: f64) -> Rgb {
+    pub(super) fn mean(&self, scale: f64) -> Rgb {
         let [r, g, b] = self.sum.map(|sum| sum as f64);
         if self.samples == 0 { Rgb::ZERO } else { Rgb::new(r, g, b) / (scale * f64::from(self.samples)) }
     }
 
-    fn error(&self, scale: f64) -> f64 {
+    pub(super) fn samples(&self) -> u32 {
+        self.samples
+    }
+
+    pub(super) fn error(&self, scale: f64) -> f64 {
         if self.samples < 2 {
             return f64::INFINITY;
         }
@@ -135,6 +138,13 @@ impl Pixel {
         let variance = (self.luminance_squares as f64 / n - mean * mean).max(0.0);
         (variance / (n - 1.0)).sqrt() / scale
     }
+}
+
+/// A radiance in units of 1/scale; what is too large is cut.
+#[inline]
+pub(super) fn fixed(radiance: Rgb, scale: f64) -> [i64; 3] {
+    let fixed = |v: f64| nearest((v * scale).clamp(-MOST_FIXED, MOST_FIXED));
+    [fixed(radiance.x), fixed(radiance.y), fixed(radiance.z)]
 }
 
 /// The nearest whole number; 0 of what is no number. `f64::round` is a call where a processor may lack the instruction.

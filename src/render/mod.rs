@@ -17,6 +17,8 @@
 //! | `caustic` | light that comes by mirrors and glass |
 //! | `path`, `queue` | paths, step by step, and those that wait for a lane |
 //! | [`observer`] | watching paths |
+//! | [`apart`] | a pixel taken apart: light by light, and by kinds of paths |
+//! | [`first`] | what camera rays meet first |
 //! | [`film`] | exact sums |
 //! | `prepass` | exposure and the film's scale |
 //! | [`control`] | cancelling and progress |
@@ -29,12 +31,14 @@
 //! whole: random numbers are a function of pixel and sample, and sums are exact.
 
 mod accel;
+pub mod apart;
 pub mod bsdf;
 mod camera;
 mod caustic;
 pub mod control;
 pub mod exact;
 pub mod film;
+pub mod first;
 mod functions;
 pub mod lanes;
 pub mod level;
@@ -60,6 +64,7 @@ use crate::asset::Mesh;
 use crate::color::Rgb;
 use crate::math::{DVec3, exp2, ln};
 use crate::scene::{Light, Material, Paint, PrimitiveId, Scene, Shape, Target, Tonemap};
+use apart::Sampled;
 use bsdf::Bsdfs;
 use camera::Eye;
 use caustic::Caustics;
@@ -278,12 +283,13 @@ impl<'s> Tracer<'s> {
         Ok(())
     }
 
-    /// The radiance that one sample adds to its pixel, watched. Traced in one lane, to the same bits as in many.
-    pub fn sample<O: Observer>(&self, x: u32, y: u32, sample: u32, observer: &mut O) -> Rgb {
-        let mut single = Single { job: Some(Job { x, y, sample, pixel: 0 }), radiance: Rgb::ZERO };
+    /// What one sample adds to its pixel, watched. Traced in one lane, to the same bits as in many.
+    pub fn sample<O: Observer>(&self, x: u32, y: u32, sample: u32, observer: &mut O) -> Sampled {
+        let job = Some(Job { x, y, sample, pixel: 0 });
+        let mut single = Single { job, unit: self.unit, sampled: Sampled::default() };
         let view = View::new(&self.eye, self.scene.trace.seed);
         path::trace(One, self, &view, &mut single, observer);
-        single.radiance * self.unit
+        single.sampled
     }
 
     /// Traces paths on the tracer's level.
@@ -404,7 +410,8 @@ impl Jobs for Tile<'_> {
 /// One path.
 struct Single {
     job: Option<Job>,
-    radiance: Rgb,
+    unit: f64,
+    sampled: Sampled,
 }
 
 impl Jobs for Single {
@@ -413,7 +420,9 @@ impl Jobs for Single {
     }
 
     fn finish(&mut self, arrived: &Arrived) {
-        self.radiance = f64::from(arrived.weight) * wide(arrived.radiance);
+        let weight = f64::from(arrived.weight);
+        let radiance = weight * self.unit * wide(arrived.radiance);
+        self.sampled = Sampled { radiance, weight, open: arrived.open };
     }
 }
 

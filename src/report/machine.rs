@@ -1,7 +1,7 @@
 //! Diagnostics for programs: one JSON object a line. `docs/diagnostics-json.md` is its contract.
 
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::source::Sources;
+use crate::source::{Place, Sources};
 use crate::span::Span;
 use serde::Serialize;
 
@@ -22,21 +22,6 @@ struct Object<'a> {
     help: Option<&'a str>,
     fixes: Vec<Mend<'a>>,
     uses: Vec<Used<'a>>,
-}
-
-/// A range of a file.
-#[derive(Serialize)]
-struct Place<'a> {
-    file: &'a str,
-    start: Point,
-    end: Point,
-}
-
-#[derive(Serialize)]
-struct Point {
-    byte: u32,
-    line: usize,
-    column: usize,
 }
 
 /// A range with what is said of it.
@@ -63,7 +48,7 @@ struct Mend<'a> {
 
 /// One diagnostic as a JSON object, without a line end in it.
 pub fn json(diagnostic: &Diagnostic, sources: &Sources) -> String {
-    let note = |span: Span, text| Note { place: place(span, sources), text };
+    let note = |span: Span, text| Note { place: sources.place_of(span), text };
     let mends = diagnostic
         .fix
         .iter()
@@ -74,7 +59,7 @@ pub fn json(diagnostic: &Diagnostic, sources: &Sources) -> String {
         title: diagnostic.code.title(),
         severity: severity(diagnostic),
         message: &diagnostic.message,
-        place: place(diagnostic.primary.span, sources),
+        place: sources.place_of(diagnostic.primary.span),
         label: Some(diagnostic.primary.text.as_str()).filter(|text| !text.is_empty()),
         labels: diagnostic.labels.iter().map(|label| note(label.span, label.text.as_str())).collect(),
         help: diagnostic.help.as_deref(),
@@ -83,7 +68,7 @@ pub fn json(diagnostic: &Diagnostic, sources: &Sources) -> String {
             .uses
             .iter()
             .map(|used| Used {
-                note: note(used.span, super::first_line(sources.text(used.span))),
+                note: note(used.span, sources.first_line(used.span)),
                 turn: used.turn.as_deref(),
             })
             .collect(),
@@ -95,7 +80,7 @@ pub fn json(diagnostic: &Diagnostic, sources: &Sources) -> String {
 ///
 /// Source: GitHub documentation, "Workflow commands for GitHub Actions", setting an error message.
 pub fn github(diagnostic: &Diagnostic, sources: &Sources) -> String {
-    let place = place(diagnostic.primary.span, sources);
+    let place = sources.place_of(diagnostic.primary.span);
     let title = format!("{} {}", diagnostic.code.as_str(), diagnostic.code.title());
     let mut text = diagnostic.message.clone();
     if let Some(help) = &diagnostic.help {
@@ -135,15 +120,4 @@ fn severity(diagnostic: &Diagnostic) -> &'static str {
         Severity::Error => "error",
         Severity::Warning => "warning",
     }
-}
-
-fn place(span: Span, sources: &Sources) -> Place<'_> {
-    let source = sources.get(span.source);
-    let point = |byte: u32| {
-        // A place may name more than there is, where only the beginning of a file was kept.
-        let byte = byte.min(source.text.len() as u32);
-        let (line, column) = source.line_column(source.text.floor_char_boundary(byte as usize));
-        Point { byte, line, column }
-    };
-    Place { file: &source.name, start: point(span.start), end: point(span.end) }
 }

@@ -281,6 +281,18 @@ impl Scene {
 }
 
 impl Material {
+    /// The name of its kind in the language.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Material::Diffuse { .. } => "diffuse",
+            Material::Mirror { .. } => "mirror",
+            Material::Dielectric { .. } => "dielectric",
+            Material::Metal { .. } => "metal",
+            Material::Plastic { .. } => "plastic",
+            Material::Emitter { .. } => "emitter",
+        }
+    }
+
     /// The texture it is painted with.
     pub fn texture(&self) -> Option<TextureId> {
         match *self {

@@ -7,7 +7,7 @@ use crate::color::Rgb;
 use crate::render::Tracer;
 use crate::render::lanes::Lanes;
 use crate::render::media::Inside;
-use crate::render::observer::{Contribution, Observer};
+use crate::render::observer::{Contribution, Observer, Way};
 use crate::render::queue::{Arrived, Jobs};
 
 /// Something that a path wants to know of a place that it has come by.
@@ -17,6 +17,8 @@ pub struct Look {
     pub ticket: u32,
     /// Scattering events between the lamp and the camera, all and rough ones.
     pub bounces: [u32; 2],
+    /// How the path leaves the first surface that scatters it.
+    pub first: Way,
     /// The place, and the normal on the side of the path.
     pub p: [f32; 3],
     /// See `p`.
@@ -165,7 +167,7 @@ impl Looks {
     ) {
         self.work.answer(l, tracer, &mut self.list, &self.insides);
         for index in 0..self.list.len() {
-            let Look { ticket, bounces, goal, .. } = self.list[index];
+            let Look { ticket, bounces, first, goal, .. } = self.list[index];
             let answer = self.work.answers[index];
             let waiting = &mut self.waiting[ticket as usize];
             for (sum, answer) in waiting.sum.iter_mut().zip(answer) {
@@ -177,6 +179,7 @@ impl Looks {
                     source: tracer.caustics.goals[goal as usize].source,
                     bounces: bounces[0],
                     rough_bounces: bounces[1],
+                    first: Some(first),
                     radiance: Rgb::from_array(answer.map(f64::from)) * tracer.unit,
                 });
             }

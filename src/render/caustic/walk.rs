@@ -10,6 +10,7 @@ use crate::render::Tracer;
 use crate::render::bsdf::{Bsdfs, Samples};
 use crate::render::lanes::{Float, Lanes, MOST, Mask, Word};
 use crate::render::media::Inside;
+use crate::render::observer::{FirstWays, Way};
 use crate::render::path::{Vertices, one};
 use crate::render::queue::{Arrived, Jobs};
 use crate::render::sampler::{Pair, Sampler};
@@ -48,6 +49,8 @@ pub struct Here<'a, L: Lanes> {
     pub throughput: V<L>,
     /// Scattering events before, all and rough ones.
     pub bounces: [L::U; 2],
+    /// How they left their first surfaces.
+    pub first: FirstWays,
     /// What they are inside of.
     pub insides: &'a [Inside],
     /// The lanes inside of anything.
@@ -60,6 +63,12 @@ impl<L: Lanes> Here<'_, L> {
     fn next_bounces(&self, lane: usize) -> [u32; 2] {
         let [all, rough] = self.bounces;
         [all.get(lane) + 1, rough.get(lane) + 1]
+    }
+
+    /// How the path leaves the first surface that scatters it, if it is scattered here.
+    #[inline]
+    fn way(&self, lane: usize) -> Way {
+        if self.bounces[0].get(lane) == 0 { Way::Rough } else { self.first.of(lane) }
     }
 
     #[inline]
@@ -84,6 +93,8 @@ pub struct Luck {
     pub radiance: [f32; 3],
     /// Scattering events, all and rough ones.
     pub bounces: [u32; 2],
+    /// How the path left its first surface.
+    pub first: Way,
 }
 
 /// No ticket.
@@ -161,6 +172,7 @@ impl<L: Lanes> Chains<L> {
             let look = Look {
                 ticket: self.ticket(lane),
                 bounces: [bounces + events, rough_bounces],
+                first: here.way(lane),
                 p: p.get(0),
                 n: n.get(0),
                 place: vertices.place.get(lane),
@@ -183,6 +195,7 @@ impl<L: Lanes> Chains<L> {
         let look = Look {
             ticket: self.ticket(lane),
             bounces: here.next_bounces(lane),
+            first: here.way(lane),
             p: p.get(0),
             n: n.get(0),
             place: vertices.place.get(lane),
@@ -218,6 +231,7 @@ impl<L: Lanes> Chains<L> {
         let look = Look {
             ticket: self.ticket(lane),
             bounces: luck.bounces,
+            first: luck.first,
             p: p.get(0),
             n: n.get(0),
             place: self.place.get(lane),

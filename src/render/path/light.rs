@@ -8,7 +8,7 @@ use crate::render::bsdf::Bsdfs;
 use crate::render::caustic::walk::Luck;
 use crate::render::lanes::{Float, Lanes, Mask, One, Word};
 use crate::render::light::{LightSamples, Source};
-use crate::render::observer::{Contribution, Observer};
+use crate::render::observer::{Contribution, Observer, Way};
 use crate::render::sampler::Pair;
 use crate::render::shape::{Hits, Points, Rays, decode, slot};
 use crate::render::vector::V;
@@ -38,7 +38,8 @@ impl<L: Lanes> Paths<L> {
         for lane in chains.are_chains(l, met).lanes() {
             let radiance = self.throughput.times(radiance).get(lane);
             let bounces = [self.bounces.get(lane), self.rough_bounces.get(lane)];
-            bits |= u32::from(chains.find(tracer, lane, Luck { lamp, radiance, bounces })) << lane;
+            let luck = Luck { lamp, radiance, bounces, first: self.first.of(lane) };
+            bits |= u32::from(chains.find(tracer, lane, luck)) << lane;
         }
         l.mask(bits)
     }
@@ -186,10 +187,14 @@ impl<L: Lanes> Paths<L> {
         self.radiance = V::pick(mask, self.radiance + radiance, self.radiance);
         if O::WATCHES {
             for lane in mask.lanes() {
+                let bounces = bounces.get(lane);
+                // Light that is gathered at the first surface comes before it is known how the path goes on from there.
+                let way = if self.bounces.get(lane) == 0 { Way::Rough } else { self.first.of(lane) };
                 observer.contributed(&Contribution {
                     source,
-                    bounces: bounces.get(lane),
+                    bounces,
                     rough_bounces: rough_bounces.get(lane),
+                    first: (bounces > 0).then_some(way),
                     radiance: rgb(radiance, lane) * tracer.unit,
                 });
             }

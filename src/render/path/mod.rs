@@ -24,7 +24,7 @@ use super::bsdf::Kind;
 use super::caustic::walk::{Chains, Here};
 use super::lanes::{Float, Lanes, Mask, One, Word};
 use super::light::Receivers;
-use super::observer::{Observer, Place};
+use super::observer::{FirstWays, Meeting, Observer, Place};
 use super::queue::{Arrived, Jobs, Queue, View};
 use super::sampler::Sampler;
 use super::shape::{Hits, NOWHERE, Rays, decode, slot};
@@ -77,6 +77,8 @@ pub(super) struct Paths<L: Lanes> {
     media: Media<L>,
     /// What paths remember of their ways, if caustics are looked for.
     chains: Option<Chains<L>>,
+    /// How they left the first surface; kept for observers alone.
+    first: FirstWays,
 }
 
 /// Traces all paths that there are to do.
@@ -143,6 +145,7 @@ impl<L: Lanes> Paths<L> {
             open: l.mask(0),
             media: Media::new(l, tracer),
             chains: (view.looks && !tracer.caustics.is_empty()).then(|| Chains::new(l)),
+            first: FirstWays::default(),
         }
     }
 
@@ -208,7 +211,7 @@ impl<L: Lanes> Paths<L> {
             self.open = self.open | open;
             missed = missed & !open;
         }
-        if missed.any() {
+        if O::FOLLOWS && missed.any() {
             self.find_beyond(l, tracer, missed, observer);
         }
         self.alive = met;
@@ -222,7 +225,9 @@ impl<L: Lanes> Paths<L> {
         // Account for what the surfaces give by themselves.
         let glowing = met & bsdfs.are(l, Kind::Emitter);
         if glowing.any() {
-            self.find_surfaces(l, tracer, &hits, &points, entering, bsdfs.color, glowing, observer);
+            if O::FOLLOWS {
+                self.find_surfaces(l, tracer, &hits, &points, entering, bsdfs.color, glowing, observer);
+            }
             self.alive = self.alive & !glowing;
         }
 
@@ -233,6 +238,24 @@ impl<L: Lanes> Paths<L> {
             let passing =
                 self.meet_boundaries(l, tracer, &hits, &points, entering, boundaries, &mut bsdfs.eta);
             active = active & !passing;
+        }
+        if O::WATCHES {
+            let color = V::pick(glowing, V::all(l.f(0.0)), bsdfs.color);
+            for lane in (active | glowing).lanes() {
+                let side = if entering.bits() >> lane & 1 == 1 { 1.0 } else { -1.0 };
+                observer.met(&Meeting {
+                    pixel: self.pixel.get(lane),
+                    bounce: self.bounces.get(lane),
+                    place: place_at(tracer, &hits.lane(lane)),
+                    p: tracer.space.world(points.p, lane),
+                    n: side * double(points.shading, lane),
+                    color: rgb(color, lane),
+                });
+            }
+        }
+        if !O::FOLLOWS {
+            self.alive = self.alive & !active;
+            return;
         }
 
         // End at the limits that the scene sets.
@@ -272,6 +295,7 @@ impl<L: Lanes> Paths<L> {
                 bsdfs: &bsdfs,
                 throughput: self.throughput,
                 bounces: [self.bounces, self.rough_bounces],
+                first: self.first,
                 insides: &self.media.inside,
                 wet: self.media.any,
             };

@@ -64,6 +64,8 @@ impl<L: Lanes> Paths<L> {
                     specular: samples.specular.bits() >> lane & 1 == 1,
                 });
             }
+            let first = active & self.bounces.is(l.u(0));
+            self.first.note(first.bits(), samples.specular.bits(), samples.wi.z.lt(zero).bits());
         }
         let d = vertices.world(samples.wi);
         samples.some = samples.some & vertices.agree(l, tracer, samples.wi, d);
@@ -75,6 +77,7 @@ impl<L: Lanes> Paths<L> {
                 bsdfs,
                 throughput: self.throughput,
                 bounces: [self.bounces, self.rough_bounces],
+                first: self.first,
                 insides: &self.media.inside,
                 wet: self.media.any,
             };

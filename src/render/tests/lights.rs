@@ -359,7 +359,7 @@ fn contributions_add_up_and_cut_paths_are_told() {
     let (mut cut, mut most) = (0, 0);
     for i in 0..500 {
         let mut sum = Sum::default();
-        let value = tracer.sample(160 + i % 20, 120 + i / 20, 0, &mut sum);
+        let value = tracer.sample(160 + i % 20, 120 + i / 20, 0, &mut sum).radiance;
         // The tracer adds in single precision.
         assert!((value - sum.radiance).abs().max_element() <= 1e-6 * sum.radiance.max_element());
         assert!(sum.vertices <= 4 && (sum.cut == 0 || sum.vertices == 4));

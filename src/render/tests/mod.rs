@@ -129,7 +129,7 @@ fn measure(tracer: &Tracer, samples: u32) -> (f64, f64) {
     for y in 0..height {
         for x in 0..width {
             for sample in 0..each {
-                let value = luminance(tracer.sample(x, y, sample, &mut ()));
+                let value = luminance(tracer.sample(x, y, sample, &mut ()).radiance);
                 sum += value;
                 squares += value * value;
                 count += 1.0;

@@ -40,6 +40,18 @@ pub enum Shape {
 }
 
 impl Shape {
+    /// The name of its kind in the language.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Shape::Sphere { .. } => "sphere",
+            Shape::Plane { .. } => "plane",
+            Shape::Quadric(quadric) => quadric.form.kind(),
+            Shape::Disk(_) => "disk",
+            Shape::Box(_) => "box",
+            Shape::Mesh(_) => "mesh",
+        }
+    }
+
     /// The box around it, or none for a surface without end.
     pub fn bounds(&self) -> Option<Bounds> {
         match self {

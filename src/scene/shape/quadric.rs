@@ -40,6 +40,17 @@ pub enum Form {
 }
 
 impl Form {
+    /// The name of its kind in the language.
+    pub fn kind(self) -> &'static str {
+        match self {
+            Form::Ellipsoid => "sphere",
+            Form::OneSheet | Form::TwoSheet => "hyperboloid",
+            Form::Paraboloid => "paraboloid",
+            Form::Cone => "cone",
+            Form::Cylinder => "cylinder",
+        }
+    }
+
     /// The factor s of y² in q.
     pub fn y_sign(self) -> f64 {
         match self {

@@ -1,0 +1,176 @@
+//! A pixel taken apart: from which lights its radiance comes, by which kinds of paths, and what it shows.
+
+use super::Tracer;
+use super::film::{self, Pixel};
+use super::first::{First, Firsts};
+use super::light::Source;
+use super::observer::{Contribution, Meeting, Observer, PathKind};
+use crate::color::{Rgb, luminance};
+use crate::scene::Camera;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// A pixel taken apart. The parts are sums in the fixed point of the film, which add up to the film's exactly.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Apart {
+    scale: f64,
+    pixel: Pixel,
+    firsts: Firsts,
+    parts: BTreeMap<(Source, PathKind), [i64; 3]>,
+}
+
+impl Apart {
+    /// Nothing yet, to be counted in the units of a film's scale.
+    pub fn new(scale: f64) -> Apart {
+        let firsts = Firsts::default();
+        Apart { scale, pixel: Pixel::default(), firsts, parts: BTreeMap::new() }
+    }
+
+    /// How many samples it holds.
+    pub fn samples(&self) -> u32 {
+        self.pixel.samples()
+    }
+
+    /// As [`Film::mean`](super::Film::mean).
+    pub fn mean(&self) -> Rgb {
+        self.pixel.mean(self.scale)
+    }
+
+    /// As [`Film::error`](super::Film::error).
+    pub fn error(&self) -> f64 {
+        self.pixel.error(self.scale)
+    }
+
+    /// As [`Film::alpha`](super::Film::alpha).
+    pub fn alpha(&self) -> f64 {
+        self.pixel.alpha()
+    }
+
+    /// What its camera rays meet.
+    pub fn firsts(&self) -> &Firsts {
+        &self.firsts
+    }
+
+    /// What each light adds to the mean by each kind of path. Only those that add anything.
+    pub fn parts(&self) -> impl Iterator<Item = (Source, PathKind, Rgb)> {
+        self.parts.iter().map(|((source, kind), sum)| (*source, *kind, self.over_samples(sum)))
+    }
+
+    /// What each light adds to the mean, the most first.
+    pub fn by_light(&self) -> Vec<(Source, Rgb)> {
+        self.gathered(|source, _| source)
+    }
+
+    /// What each kind of path adds to the mean, the most first.
+    pub fn by_kind(&self) -> Vec<(PathKind, Rgb)> {
+        self.gathered(|_, kind| kind)
+    }
+
+    fn gathered<K: Ord + Copy>(&self, key: impl Fn(Source, PathKind) -> K) -> Vec<(K, Rgb)> {
+        let mut sums: BTreeMap<K, [i64; 3]> = BTreeMap::new();
+        for ((source, kind), part) in &self.parts {
+            let sum = sums.entry(key(*source, *kind)).or_default();
+            sum.iter_mut().zip(part).for_each(|(sum, v)| *sum += v);
+        }
+        let mut all: Vec<_> = sums.iter().map(|(key, sum)| (*key, self.over_samples(sum))).collect();
+        all.sort_by(|(a, x), (b, y)| luminance(*y).total_cmp(&luminance(*x)).then(a.cmp(b)));
+        all
+    }
+
+    fn over_samples(&self, sum: &[i64; 3]) -> Rgb {
+        Rgb::from_array(sum.map(|v| v as f64)) / (self.scale * f64::from(self.samples()))
+    }
+
+    fn add(&mut self, watched: &Watched) {
+        let Sampled { radiance, weight, open } = watched.sampled;
+        self.pixel.add(radiance, self.scale);
+        self.pixel.cover(open, weight);
+        self.firsts.add(weight, watched.first.as_ref());
+        self.add_parts(film::fixed(radiance, self.scale), weight, &watched.contributions);
+    }
+
+    /// Adds what a sample is made of. A path adds in single precision, and one that is too bright for the scale is cut: by so
+    /// much the largest part is mended, that the parts stay the whole.
+    fn add_parts(&mut self, whole: [i64; 3], weight: f64, contributions: &[Contribution]) {
+        let brightness = |part: &Contribution| luminance(part.radiance);
+        let Some(largest) = (0..contributions.len())
+            .max_by(|a, b| brightness(&contributions[*a]).total_cmp(&brightness(&contributions[*b])))
+        else {
+            return;
+        };
+        let mut rest = whole;
+        let mut parts: Vec<[i64; 3]> =
+            contributions.iter().map(|part| film::fixed(weight * part.radiance, self.scale)).collect();
+        for part in &parts {
+            rest.iter_mut().zip(part).for_each(|(rest, v)| *rest -= v);
+        }
+        parts[largest].iter_mut().zip(rest).for_each(|(v, rest)| *v += rest);
+        for (contribution, part) in contributions.iter().zip(parts) {
+            let sum = self.parts.entry((contribution.source, contribution.kind())).or_default();
+            sum.iter_mut().zip(part).for_each(|(sum, v)| *sum += v);
+        }
+    }
+}
+
+/// What one sample adds to its pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sampled {
+    /// In W/(m²·sr), by its weight.
+    pub radiance: Rgb,
+    /// By the reconstruction filter.
+    pub weight: f64,
+    /// Whether its ray meets nothing in front of a transparent background.
+    pub open: bool,
+}
+
+/// A path with all that it did.
+#[derive(Clone, Debug)]
+pub(super) struct Watched {
+    /// What it brought.
+    pub(super) sampled: Sampled,
+    /// What it met first.
+    pub(super) first: Option<First>,
+    /// What it is made of.
+    pub(super) contributions: Vec<Contribution>,
+}
+
+/// Samples that are watched before what they did is added up.
+const BLOCK: u32 = 1024;
+
+impl Tracer<'_> {
+    /// Adds a range of samples to a pixel that is taken apart, on the current rayon pool. Its mean is that of a film of the same
+    /// scale and samples, to the bit.
+    pub fn take_apart(&self, [x, y]: [u32; 2], samples: Range<u32>, apart: &mut Apart) {
+        for start in samples.clone().step_by(BLOCK as usize) {
+            let block = start..samples.end.min(start.saturating_add(BLOCK));
+            let watched: Vec<Watched> =
+                block.into_par_iter().map(|sample| self.watched([x, y], sample)).collect();
+            watched.iter().for_each(|watched| apart.add(watched));
+        }
+    }
+
+    /// Traces one path and keeps all that it did.
+    pub(super) fn watched(&self, [x, y]: [u32; 2], sample: u32) -> Watched {
+        let mut watcher = Watcher { camera: &self.scene.camera, first: None, contributions: vec![] };
+        let sampled = self.sample(x, y, sample, &mut watcher);
+        let Watcher { first, contributions, .. } = watcher;
+        Watched { sampled, first, contributions }
+    }
+}
+
+struct Watcher<'a> {
+    camera: &'a Camera,
+    first: Option<First>,
+    contributions: Vec<Contribution>,
+}
+
+impl Observer for Watcher<'_> {
+    fn met(&mut self, meeting: &Meeting) {
+        self.first.get_or_insert_with(|| First::new(meeting, self.camera));
+    }
+
+    fn contributed(&mut self, contribution: &Contribution) {
+        self.contributions.push(*contribution);
+    }
+}

@@ -1,0 +1,228 @@
+//! What camera rays meet first: depth, normal, colour, and which surfaces.
+
+use super::control::{Cancelled, Control};
+use super::film::Window;
+use super::lanes::Lanes;
+use super::level::Task;
+use super::observer::{Meeting, Observer};
+use super::path;
+use super::queue::{Arrived, Job, Jobs, View};
+use super::{TILE, Tracer};
+use crate::color::Rgb;
+use crate::math::DVec3;
+use crate::scene::{Camera, PrimitiveId};
+use rayon::prelude::*;
+
+/// The most samples of a pixel whose rays are asked what they meet first: that is known well long before light is.
+pub const MOST_FIRST_SAMPLES: u32 = 64;
+
+/// What a camera ray meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct First {
+    primitive: PrimitiveId,
+    depth: f64,
+    n: DVec3,
+    color: Rgb,
+}
+
+impl First {
+    /// A meeting as seen by a camera.
+    pub(super) fn new(meeting: &Meeting, camera: &Camera) -> First {
+        First {
+            primitive: meeting.place.primitive,
+            depth: (meeting.p - camera.position).dot(camera.forward),
+            n: meeting.n,
+            color: meeting.color,
+        }
+    }
+}
+
+/// What the rays of a pixel meet first, summed by the weights that samples have in the pixel. Added up in the order of
+/// samples, it has the same bits for any number of threads and lanes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Firsts {
+    /// Of all samples, and of those that meet something.
+    weight: f64,
+    met: f64,
+    depth: f64,
+    normal: DVec3,
+    color: Rgb,
+    shown: Vec<(PrimitiveId, f64)>,
+}
+
+impl Firsts {
+    /// Adds a sample of a weight, and what it meets.
+    pub(super) fn add(&mut self, weight: f64, first: Option<&First>) {
+        self.weight += weight;
+        let Some(first) = first else { return };
+        self.met += weight;
+        self.depth += weight * first.depth;
+        self.normal += weight * first.n;
+        self.color += weight * first.color;
+        match self.shown.iter_mut().find(|(known, _)| *known == first.primitive) {
+            Some((_, sum)) => *sum += weight,
+            None => self.shown.push((first.primitive, weight)),
+        }
+    }
+
+    /// Distance in metres from the camera along its axis, as the lens's `focus` counts: the mean over the rays that meet
+    /// something; none where none does.
+    pub fn depth(&self) -> Option<f64> {
+        self.over_met(self.depth)
+    }
+
+    /// The normal to shade with, on the side of the camera, in the world: the mean over the rays that meet something, so that
+    /// it is shorter than 1 where they differ.
+    pub fn normal(&self) -> Option<DVec3> {
+        Some(DVec3::new(
+            self.over_met(self.normal.x)?,
+            self.over_met(self.normal.y)?,
+            self.over_met(self.normal.z)?,
+        ))
+    }
+
+    /// The colour of the materials, as [`Meeting::color`] has it: the mean over all rays, of which those that meet nothing
+    /// are black.
+    pub fn albedo(&self) -> Rgb {
+        if self.weight > 0.0 { self.color / self.weight } else { Rgb::ZERO }
+    }
+
+    /// The surfaces with the shares of the pixel that they cover, the largest first; equal ones by id. A filter with negative
+    /// weights may leave one less than nothing, which is left out.
+    pub fn shown(&self) -> Vec<(PrimitiveId, f64)> {
+        let share = |(id, sum): &(PrimitiveId, f64)| (*id, sum / self.weight);
+        let mut shown: Vec<_> = self.shown.iter().map(share).filter(|(_, share)| *share > 0.0).collect();
+        shown.sort_by(|(a, x), (b, y)| y.total_cmp(x).then(a.cmp(b)));
+        shown
+    }
+
+    fn over_met(&self, sum: f64) -> Option<f64> {
+        // Where negative weights cancel the others, there is no mean.
+        (self.met > LEAST_MET * self.weight).then(|| sum / self.met)
+    }
+}
+
+/// The least share of a pixel that has to be covered for means over what covers it.
+const LEAST_MET: f64 = 1e-6;
+
+/// What the camera's rays of a window meet first.
+#[derive(Clone, Debug)]
+pub struct FirstHits {
+    window: Window,
+    /// Row by row.
+    pixels: Vec<Firsts>,
+}
+
+impl FirstHits {
+    /// The part of the full picture that it covers.
+    pub fn window(&self) -> Window {
+        self.window
+    }
+
+    /// Those of a pixel of the full picture, which lies in the window.
+    pub fn pixel(&self, x: u32, y: u32) -> &Firsts {
+        &self.pixels[self.window.index(x, y)]
+    }
+}
+
+impl Tracer<'_> {
+    /// Finds what the rays of the first samples of each pixel meet first, [`MOST_FIRST_SAMPLES`] at most: the very rays that
+    /// the picture is made of.
+    ///
+    /// # Errors
+    ///
+    /// If the control cancels.
+    pub fn first_hits(
+        &self,
+        window: Window,
+        samples: u32,
+        control: &Control,
+    ) -> Result<FirstHits, Cancelled> {
+        let samples = samples.clamp(1, MOST_FIRST_SAMPLES);
+        let tiles: Vec<Window> = window.tiles(TILE).collect();
+        let traced: Vec<Vec<Firsts>> =
+            tiles.par_iter().map(|tile| self.tile_of_firsts(*tile, samples, control)).collect();
+        if control.is_cancelled() {
+            return Err(Cancelled);
+        }
+        let mut pixels = vec![Firsts::default(); window.pixels()];
+        for (tile, traced) in tiles.iter().zip(traced) {
+            for (firsts, index) in traced.into_iter().zip(0..) {
+                let (x, y) = (tile.x + index % tile.width, tile.y + index / tile.width);
+                pixels[window.index(x, y)] = firsts;
+            }
+        }
+        Ok(FirstHits { window, pixels })
+    }
+
+    fn tile_of_firsts(&self, tile: Window, samples: u32, control: &Control) -> Vec<Firsts> {
+        let count = tile.pixels() * samples as usize;
+        let mut rays = Rays { tile, samples, next: 0, weights: vec![0.0; count], control };
+        let mut meetings = Meetings { camera: &self.scene.camera, firsts: vec![None; count] };
+        let view = View::new(&self.eye, self.scene.trace.seed).by_luck();
+        self.level.run(FirstTask { tracer: self, view: &view, rays: &mut rays, meetings: &mut meetings });
+        let each: Vec<_> = rays.weights.into_iter().zip(meetings.firsts).collect();
+        let sums = each.chunks_exact(samples as usize).map(|samples| {
+            let mut firsts = Firsts::default();
+            for (weight, first) in samples {
+                firsts.add(f64::from(*weight), first.as_ref());
+            }
+            firsts
+        });
+        sums.collect()
+    }
+}
+
+struct FirstTask<'a, 's, 'c> {
+    tracer: &'a Tracer<'s>,
+    view: &'a View<'a>,
+    rays: &'a mut Rays<'c>,
+    meetings: &'a mut Meetings<'c>,
+}
+
+impl Task for FirstTask<'_, '_, '_> {
+    type Output = ();
+    fn run<L: Lanes>(self, l: L) {
+        path::trace(l, self.tracer, self.view, self.rays, self.meetings);
+    }
+}
+
+/// The camera rays of a tile, pixel by pixel; each has a place of its own.
+struct Rays<'a> {
+    tile: Window,
+    samples: u32,
+    next: u32,
+    weights: Vec<f32>,
+    control: &'a Control,
+}
+
+impl Jobs for Rays<'_> {
+    fn next(&mut self) -> Option<Job> {
+        let place = self.next;
+        if place as usize >= self.weights.len() || self.control.is_cancelled() {
+            return None;
+        }
+        self.next += 1;
+        let (pixel, sample) = (place / self.samples, place % self.samples);
+        let (x, y) = (pixel % self.tile.width, pixel / self.tile.width);
+        Some(Job { x: self.tile.x + x, y: self.tile.y + y, sample, pixel: place })
+    }
+
+    fn finish(&mut self, arrived: &Arrived) {
+        self.weights[arrived.pixel as usize] = arrived.weight;
+    }
+}
+
+/// What they meet.
+struct Meetings<'a> {
+    camera: &'a Camera,
+    firsts: Vec<Option<First>>,
+}
+
+impl Observer for Meetings<'_> {
+    const FOLLOWS: bool = false;
+
+    fn met(&mut self, meeting: &Meeting) {
+        self.firsts[meeting.pixel as usize] = Some(First::new(meeting, self.camera));
+    }
+}
