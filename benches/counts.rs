@@ -68,9 +68,9 @@ fn main() -> ExitCode {
     let told: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match told[..] {
         ["--load", name, times] => {
-            // The one thread there is does all the work, so that none waits for another.
-            let here = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global();
-            here.expect("nobody has asked for threads yet");
+            // One thread does the work, so that none is counted that looks for some.
+            let one = rayon::ThreadPoolBuilder::new().num_threads(1).build_global();
+            one.expect("nobody has asked for threads yet");
             let load = LOADS.iter().find(|load| load.name == name).expect("one of the loads");
             (load.run)(times.parse().expect("a number of times"));
             ExitCode::SUCCESS
