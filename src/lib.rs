@@ -27,6 +27,7 @@
 //! | [`render`] | scene to film; cannot fail | places, files, syntax |
 //! | [`output`] | film to the bytes of image files, and back | files |
 //! | [`explain`] | the page on each diagnostic | how it is shown |
+//! | [`change`] | what is different between a scene and the one before it | where it is shown |
 //! | [`inventory`] | what stands in a picture, counted | how it is shown |
 //! | [`mend`] | applying the edits that diagnostics offer | files |
 //! | [`report`] | diagnostics to text, for a person or a program | what they are about |
@@ -34,6 +35,7 @@
 
 pub mod asset;
 mod allow;
+pub mod change;
 pub mod check;
 pub mod color;
 pub mod develop;

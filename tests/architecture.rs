@@ -39,6 +39,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ("render", &["math", "color", "develop", "asset", "scene"]),
     ("output", &["math", "color", "develop", "scene"]),
     ("explain", &["diagnostic"]),
+    ("change", &["span", "color", "scene", "syntax"]),
     ("inventory", &["source", "schema", "check", "eval", "scene"]),
     ("mend", &["span", "diagnostic"]),
     ("report", &["span", "source", "diagnostic", "explain"]),

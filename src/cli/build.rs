@@ -1,6 +1,6 @@
 //! `rtc build`: scenes to pictures.
 
-use super::args::{Build, Exposure};
+use super::args::Build;
 use super::input::is_standard;
 use super::interrupt::Interrupt;
 use super::messages::{Messenger, on_standard_output};
@@ -11,9 +11,8 @@ use super::{Exit, Problem, scene as scenes};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use rt_lang::Finding;
 use rt_lang::diagnostic::Diagnostic;
-use rt_lang::lower::Overrides;
 use rt_lang::output::{Depth, Facts, Format, Picture, encode};
-use rt_lang::render::{Cancelled, Control, Rendered, Shown, Tracer, Window};
+use rt_lang::render::{Cancelled, Control, Prepass, Rendered, Shown, Tracer, Window};
 use rt_lang::scene::{self, Background, Scene};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -51,7 +50,7 @@ struct Traced {
 /// Makes the pictures in turn, also those behind one that fails.
 pub fn run(arguments: &Build, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
     let jobs = plan(arguments)?;
-    let threads = ThreadPoolBuilder::new().num_threads(arguments.threads.unwrap_or(0)).build();
+    let threads = ThreadPoolBuilder::new().num_threads(arguments.taking.threads.unwrap_or(0)).build();
     let threads = threads.map_err(|error| Problem::new(format!("cannot start the threads: {error}")))?;
     let context = Context { arguments, threads, terminal, interrupt };
     let mut messenger = Messenger::new(&arguments.messages, terminal, arguments.quiet);
@@ -98,7 +97,7 @@ fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
         return Err(problem.help("give one of the scenes another name, or build them one by one with `-o`"));
     }
     refuse_inputs_as_outputs(scenes, &all)?;
-    refuse_idle_depth(arguments.look.bits, &all)?;
+    refuse_idle_depth(arguments.taking.look.bits, &all)?;
     if on_standard_output(&arguments.messages) && all.iter().any(|target| is_standard(&target.path)) {
         let problem = Problem::new("the picture and the messages would both go to standard output");
         return Err(problem.help("write the picture to a file, or use `--message-format short`"));
@@ -158,7 +157,7 @@ fn same(path: &Path) -> PathBuf {
 fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit, Problem> {
     let Context { arguments, terminal, .. } = *context;
     let start = Instant::now();
-    let loaded = scenes::load(&job.scene, &arguments.reading, &overrides(arguments))?;
+    let loaded = scenes::load(&job.scene, &arguments.reading, &arguments.taking.overrides())?;
     let compiled = &loaded.compiled;
     let mut exit = messenger.say(&compiled.diagnostics, &loaded.sources)?;
     let Some(scene) = compiled.scene.as_ref().filter(|_| exit == Exit::Done) else {
@@ -168,7 +167,7 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
     let staged = stage(job, scene, window, context.interrupt)?;
     let Ok(traced) = trace(context, job, scene, window) else { context.interrupt.wait() };
     let facts = facts(scene, &traced);
-    context.threads.install(|| write(&traced.picture, &facts, arguments.look.bits, staged))?;
+    context.threads.install(|| write(&traced.picture, &facts, arguments.taking.look.bits, staged))?;
     let findings = findings(scene, &traced);
     let warnings: Vec<Diagnostic> = findings.iter().filter_map(|finding| compiled.judge(finding)).collect();
     if !warnings.is_empty() {
@@ -237,22 +236,6 @@ fn summary(job: &Job, scene: &Scene, traced: &Traced, time: Duration) -> String 
     format!("{names}: {width}×{height}, {samples} {unit}{noise} in {}, {exposure}", duration(time))
 }
 
-/// What the command line says in place of the file.
-fn overrides(arguments: &Build) -> Overrides {
-    Overrides {
-        camera: arguments.camera.clone(),
-        every_camera: false,
-        size: arguments.size,
-        samples: arguments.samples,
-        seed: arguments.seed,
-        exposure: arguments.exposure.map(|exposure| match exposure {
-            Exposure::Auto => None,
-            Exposure::Stops(stops) => Some(stops),
-        }),
-        tonemap: arguments.look.tonemap,
-    }
-}
-
 /// The pixels to trace.
 fn window(scene: &Scene, crop: Option<[u32; 4]>) -> Result<Window, Problem> {
     let whole = Window::whole(scene.trace.size);
@@ -293,9 +276,7 @@ fn trace(context: &Context, job: &Job, scene: &Scene, window: Window) -> Result<
     context.threads.install(|| {
         let tracer = Tracer::new(scene);
         let prepass = tracer.prepass();
-        // Two digits, so that the number that is printed gives the very picture when it is written down; and
-        // no negative zero.
-        let chosen = (prepass.exposure_stops * 100.0).round() / 100.0 + 0.0;
+        let chosen = chosen_stops(&prepass);
         let stops = scene.develop.exposure.unwrap_or(chosen);
         let shown = Shown { stops, tonemap: scene.develop.tonemap };
         let rendered = tracer.render(window, scene.trace.target, &prepass, shown, &control)?;
@@ -309,6 +290,12 @@ fn trace(context: &Context, job: &Job, scene: &Scene, window: Window) -> Result<
         let Rendered { samples, noise, target_met, .. } = rendered;
         Ok(Traced { picture, samples, noise, target_met, stops, fitting: chosen, cut: prepass.cut })
     })
+}
+
+/// The exposure where the scene gives none. Two digits, so that the number that is printed gives the very picture when
+/// it is written down; and no negative zero.
+pub fn chosen_stops(prepass: &Prepass) -> f64 {
+    (prepass.exposure_stops * 100.0).round() / 100.0 + 0.0
 }
 
 /// Writes every form of a picture, and only then moves them to their places.

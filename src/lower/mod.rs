@@ -26,6 +26,7 @@ use crate::span::{SourceId, Span};
 pub use marks::MaterialMarks;
 use material::Materials;
 pub use mesh::Meshes;
+use std::sync::Arc;
 use texture::Textures;
 
 /// The most pixels a picture may have.
@@ -130,7 +131,7 @@ pub fn lower(
         meshes.name(&mut lowering.out.contents);
         let (textures, images) = lowering.textures.finish();
         lowering.out.scene = Some(Scene {
-            primitives: lowering.primitives,
+            primitives: Arc::new(lowering.primitives),
             materials: lowering.materials.finish(),
             textures,
             images,

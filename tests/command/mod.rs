@@ -4,6 +4,7 @@ mod bad_input;
 mod layout;
 mod pictures;
 mod tools;
+mod watch;
 
 use std::fs;
 use std::path::{Path, PathBuf};
