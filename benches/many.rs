@@ -8,6 +8,7 @@
 use rt_lang::math::DVec3;
 use rt_lang::render::{Strays, Tracer};
 use rt_lang::scene::{Primitive, Scene, Shape};
+use std::sync::Arc;
 use std::time::Instant;
 
 mod scenes;
