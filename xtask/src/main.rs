@@ -42,9 +42,10 @@ cargo xtask gallery
 
   makes the pictures of docs/gallery anew, in about ten minutes on two cores
 
-cargo xtask compare [--rounds N] [SCENE…]
+cargo xtask compare [--rounds N] [--budget SECONDS] [SCENE…]
 
-  renders scenes in turns with Mitsuba and POV-Ray, on an idle machine, and prints what each took
+  renders scenes in turns with Mitsuba and POV-Ray, best on an idle machine, and prints what each took; the rounds of
+  a scene end when there were enough or its seconds are spent, and references are kept in target/compare
 
 cargo xtask e2e [STEP…]
 
