@@ -1,6 +1,6 @@
 //! What a person calls a change of a text: the names of what it lies in, such as `glass.ior`.
 
-use crate::span::SourceId;
+use crate::span::{SourceId, Span};
 use crate::syntax::{
     self,
     ast::{Body, Construct, Entry, Expr, ExprKind, Path, Statement, StatementKind},
@@ -13,16 +13,71 @@ const LONGEST: usize = 1 << 20;
 const MOST: usize = 3;
 
 /// The names of what is different between two texts: of a field, with what it belongs to; of things, each by its name or
-/// kind. None where the difference lies in comments or layout, or is too large to tell.
+/// kind. None where the difference lies between things, in comments or layout, or is too large to tell.
 pub fn names(before: &str, after: &str) -> Vec<String> {
     if before.len().max(after.len()) > LONGEST {
         return vec![];
     }
-    let (old, new) = differing(before, after);
-    // What is gone has no name in the new text.
-    match named(after, &new) {
-        names if !names.is_empty() => names,
-        _ => named(before, &old),
+    let (old, new) = (parts(before), parts(after));
+    let same = |(a, b): &(&Part, &Part)| a.text == b.text;
+    let start = old.iter().zip(&new).take_while(same).count();
+    let rest = old.len().min(new.len()) - start;
+    let end = old.iter().rev().zip(new.iter().rev()).take(rest).take_while(same).count();
+    let (old, new) = (&old[start..old.len() - end], &new[start..new.len() - end]);
+    let mut found = vec![];
+    match (old, new) {
+        _ if old.len() == new.len() => {
+            for (old, new) in old.iter().zip(new).filter(|pair| !same(pair)) {
+                let (gone, come) = differing(old.text, new.text);
+                // What is gone has no name in the new text.
+                let names = new.named(&come);
+                found.extend(if names.is_empty() { old.named(&gone) } else { names });
+            }
+        }
+        (gone, []) => found.extend(gone.iter().flat_map(Part::whole)),
+        (_, come) => found.extend(come.iter().flat_map(Part::whole)),
+    }
+    found.dedup();
+    found.truncate(MOST);
+    found
+}
+
+/// An entry of a file with its text.
+struct Part<'t> {
+    entry: Entry,
+    start: usize,
+    text: &'t str,
+}
+
+fn parts(text: &str) -> Vec<Part<'_>> {
+    let (file, _) = syntax::parse(SourceId(0), text);
+    let part = |entry: Entry| {
+        let range = place(&entry).range();
+        Part { start: range.start, text: text.get(range).unwrap_or(""), entry }
+    };
+    file.body.entries.into_iter().map(part).collect()
+}
+
+fn place(entry: &Entry) -> Span {
+    match entry {
+        Entry::Field(field) => Span { end: field.value.span.end, ..field.name.span },
+        Entry::Statement(statement) => statement.span,
+        Entry::Rows(rows) => rows.span(),
+        Entry::Broken(broken) => broken.span,
+    }
+}
+
+impl Part<'_> {
+    /// The names of what holds a range of its text.
+    fn named(&self, range: &Range<usize>) -> Vec<String> {
+        let mut found = vec![];
+        entry(&self.entry, &(self.start + range.start..self.start + range.end), &mut vec![], &mut found);
+        found
+    }
+
+    /// Its own name.
+    fn whole(&self) -> Vec<String> {
+        self.named(&(0..1))
     }
 }
 
@@ -35,36 +90,27 @@ fn differing(before: &str, after: &str) -> (Range<usize>, Range<usize>) {
     (start..before.len() - end, start..after.len() - end)
 }
 
-fn named(text: &str, range: &Range<usize>) -> Vec<String> {
-    let (file, _) = syntax::parse(SourceId(0), text);
-    let mut found = vec![];
-    body(&file.body, range, &mut vec![], &mut found);
-    found.dedup();
-    found.truncate(MOST);
-    found
-}
-
 /// Whether a place of the text has a part of the range, which may be empty.
-fn touches(span: crate::span::Span, range: &Range<usize>) -> bool {
+fn touches(span: Span, range: &Range<usize>) -> bool {
     let (start, end) = (span.start as usize, span.end as usize);
     start < range.end.max(range.start + 1) && range.start < end
 }
 
 fn body<'a>(body: &'a Body, range: &Range<usize>, way: &mut Vec<&'a str>, found: &mut Vec<String>) {
-    for entry in &body.entries {
-        match entry {
-            Entry::Field(field) => {
-                let span = crate::span::Span { end: field.value.span.end, ..field.name.span };
-                if touches(span, range) {
-                    within(&field.name.text, |way, found| expr(&field.value, range, way, found), way, found);
-                }
-            }
-            Entry::Statement(inner) if touches(inner.span, range) => statement(inner, range, way, found),
-            Entry::Broken(broken) if touches(broken.span, range) => {
-                found.extend(broken.name.as_ref().map(|name| joined(way, &name.text)));
-            }
-            Entry::Statement(_) | Entry::Rows(_) | Entry::Broken(_) => {}
+    body.entries.iter().for_each(|inner| entry(inner, range, way, found));
+}
+
+fn entry<'a>(entry: &'a Entry, range: &Range<usize>, way: &mut Vec<&'a str>, found: &mut Vec<String>) {
+    if !touches(place(entry), range) {
+        return;
+    }
+    match entry {
+        Entry::Field(field) => {
+            within(&field.name.text, |way, found| expr(&field.value, range, way, found), way, found);
         }
+        Entry::Statement(inner) => statement(inner, range, way, found),
+        Entry::Broken(broken) => found.extend(broken.name.as_ref().map(|name| joined(way, &name.text))),
+        Entry::Rows(_) => {}
     }
 }
 
@@ -183,6 +229,9 @@ sphere { radius: 2m, at: (0, 1, 0)m } // a ball
     fn comments_and_layout_have_no_name() {
         assert_eq!(changed("// a ball", "// a round thing"), "");
         assert_eq!(changed("camera", "\n\ncamera"), "");
+        // Beside another change they do not matter.
+        let before = TEXT.replace("camera", "// A camera\ncamera");
+        assert_eq!(names(&before, &TEXT.replace("1.5", "1.6")), ["glass.ior"]);
     }
 
     #[test]

@@ -137,6 +137,11 @@ impl Files for Disk {
     }
 }
 
+/// Whether two names that a user may write are of the same file.
+pub fn same_name(a: &str, b: &str) -> bool {
+    a == b || std::path::absolute(a).ok().is_some_and(|a| std::path::absolute(b).is_ok_and(|b| a == b))
+}
+
 fn plain_file(metadata: &fs::Metadata) -> Result<(), FileError> {
     match metadata {
         _ if metadata.is_file() => Ok(()),

@@ -21,6 +21,7 @@
 //! | [`first`] | what camera rays meet first |
 //! | [`film`] | exact sums |
 //! | `prepass` | exposure and the film's scale |
+//! | [`shares`] | how much of the light is of which lamp |
 //! | [`control`] | cancelling and progress |
 //! | `stray` | rays without pictures, to measure |
 //!
@@ -51,6 +52,7 @@ mod prepass;
 mod queue;
 pub mod sampler;
 pub mod shape;
+pub mod shares;
 mod space;
 mod surfaces;
 #[cfg(test)]

@@ -33,6 +33,8 @@ pub struct Engine {
     terminal: Terminal,
     /// What pages set.
     set: BTreeMap<String, String>,
+    /// Which of them are new.
+    fresh: Vec<String>,
     generation: u64,
     /// The job that was put on the desk last.
     job: Option<Arc<Job>>,
@@ -60,6 +62,7 @@ impl Engine {
         let quiet = arguments.quiet;
         Engine {
             scene,
+            fresh: vec![],
             quiet,
             reader,
             watcher,
@@ -150,6 +153,7 @@ impl Engine {
     fn set(&mut self, name: String, value: String) -> bool {
         // Its name is put before `=`: anything else would set something else.
         let known = self.hub.status().params.iter().any(|param| param.name == name);
+        self.fresh.push(name.clone());
         match value.trim() {
             _ if !known => false,
             "" => self.set.remove(&name).is_some(),
@@ -162,7 +166,8 @@ impl Engine {
         self.again = None;
         let Engine { reader, desk, set, .. } = self;
         match desk.reading(|| reader.look(set, anyway)) {
-            Seen::Same => {}
+            // What lies on the way to a missing file may have come.
+            Seen::Same => self.watcher.follow(self.reader.files()),
             Seen::Later(wait) => self.again = Some(Instant::now() + wait),
             Seen::New(loaded) => {
                 self.watcher.follow(self.reader.files());
@@ -215,7 +220,9 @@ impl Engine {
         let change = before.map(|(scene, _)| {
             change::between(scene, loaded.compiled.scene.as_ref().expect("it has no errors"))
         });
-        let reason = before.and_then(|(_, before)| reason(&before.sources, &loaded.sources));
+        let mut names = std::mem::take(&mut self.fresh);
+        names.extend(before.iter().flat_map(|(_, before)| changed(&before.sources, &loaded.sources)));
+        let reason = reason(names);
         let job = Arc::new(Job { generation: self.generation, loaded, change, reason });
         let notes = job.loaded.compiled.notes.clone();
         let generation = self.generation;
@@ -303,14 +310,16 @@ fn shown(path: &Path) -> String {
     below.unwrap_or_else(|| path.into()).display().to_string()
 }
 
-/// What a person calls the difference between two readings of a scene.
-fn reason(before: &Sources, after: &Sources) -> Option<String> {
+/// The names of what is different between two readings of a scene.
+fn changed(before: &Sources, after: &Sources) -> Vec<String> {
     let old = |name: &str| before.iter().map(|(_, source)| source).find(|source| source.name == name);
-    let mut names = vec![];
-    for (_, source) in after.iter() {
-        let Some(old) = old(&source.name).filter(|old| old.text != source.text) else { continue };
-        names.extend(change::names(&old.text, &source.text));
-    }
+    let texts = after.iter().filter_map(|(_, source)| Some((&old(&source.name)?.text, &source.text)));
+    texts.filter(|(old, new)| old != new).flat_map(|(old, new)| change::names(old, new)).collect()
+}
+
+/// What a person is told of them.
+fn reason(mut names: Vec<String>) -> Option<String> {
+    names.dedup();
     names.truncate(3);
     let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     (!quoted.is_empty()).then(|| quoted.join(", "))

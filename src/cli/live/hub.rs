@@ -177,6 +177,19 @@ pub struct Mask {
     pub bits: Vec<u8>,
 }
 
+impl Mask {
+    /// Chooses pixels by column and row.
+    pub fn of(size: [u32; 2], chosen: impl Fn(u32, u32) -> bool) -> Mask {
+        let bytes = size[0].div_ceil(8);
+        let byte = |x: u32, y: u32| {
+            let columns = (8 * x..(8 * x + 8).min(size[0])).zip((0..8).rev());
+            columns.fold(0, |byte, (x, bit)| byte | u8::from(chosen(x, y)) << bit)
+        };
+        let bits = (0..size[1]).flat_map(|y| (0..bytes).map(move |x| (x, y))).map(|(x, y)| byte(x, y));
+        Mask { size, bits: bits.collect() }
+    }
+}
+
 /// Where an answer goes. Whoever asked may be gone.
 pub type Reply<T> = oneshot::Sender<T>;
 
@@ -268,8 +281,11 @@ impl Hub {
     }
 
     /// Shows a picture.
-    pub fn show(&self, frame: Frame) {
-        self.lock().frame = Some(Arc::new(frame));
+    pub fn show(&self, frame: Arc<Frame>) {
+        let mut known = self.lock();
+        Arc::make_mut(&mut known.status).remixed = frame.remixed;
+        known.frame = Some(frame);
+        drop(known);
         self.tell();
     }
 

@@ -13,11 +13,14 @@
 //! | [`engine`] | what a new text leads to |
 //! | [`desk`] | where work waits |
 //! | [`painter`], [`work`] | tracing the newest scene, step by step |
+//! | [`answers`] | why a pixel looks as it does, and where a place of the text is seen |
 //! | [`writer`] | pictures to files, in the background |
+//! | [`said`] | what the compiler says, as a page shows it |
 //! | [`hub`] | what everybody may know, and ask |
 //! | [`serve`] | the page |
 //! | [`editor`] | how a place in a file is opened |
 
+mod answers;
 mod desk;
 mod editor;
 mod engine;

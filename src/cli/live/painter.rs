@@ -1,6 +1,7 @@
 //! Traces the newest scene, progressively, and keeps what stays good.
 
-use super::desk::{Desk, Job, Question};
+use super::answers::answer_all;
+use super::desk::{Desk, Job};
 use super::hub::{Aim, Frame, Hub, Shown, State};
 use super::work::{Step, Work};
 use super::writer::{Page, Writer};
@@ -10,7 +11,10 @@ use crate::cli::terminal::Terminal;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use rt_lang::change::Paths;
+use rt_lang::color::Rgb;
 use rt_lang::output::Facts;
+use rt_lang::render::light::Source;
+use rt_lang::render::shares::Shares;
 use rt_lang::render::{
     self, Control, FIRST_NOISE_SAMPLES, Film, MOST_NOISE_SAMPLES, Prepass, Structure, Tracer, Window,
 };
@@ -43,9 +47,21 @@ pub struct Painter {
 #[derive(Default)]
 struct Left {
     structure: Option<Structure>,
+    mix: Option<Mix>,
     canvas: Option<Canvas>,
     version: u64,
 }
+
+/// A picture that was done, and how bright its lamps have become since.
+struct Mix {
+    picture: Arc<Frame>,
+    shares: Shares,
+    /// Of each of their sources.
+    factors: Vec<Rgb>,
+}
+
+/// A picture that was mixed anew is shown until the traced one has so many samples a pixel.
+const ENOUGH: u32 = 16;
 
 /// Samples that were taken of a scene.
 struct Canvas {
@@ -86,28 +102,31 @@ impl<'a> Painting<'a> {
         let tracer = Tracer::with(self.scene, self.left.structure.take());
         let kept = self.job.change.as_ref().is_some_and(|change| change.paths == Paths::Kept);
         let canvas = self.left.canvas.take().filter(|_| kept);
-        self.say_reason(canvas.is_some(), tracer.keeps_structure());
+        if !kept {
+            self.remix();
+        }
+        let remixed = self.left.mix.is_some() && !kept;
+        self.say_reason(canvas.is_some(), tracer.keeps_structure(), remixed);
+        let prepass = canvas.as_ref().map_or_else(|| tracer.prepass(), |canvas| canvas.prepass);
         std::thread::scope(|scope| {
-            let tracer = &tracer;
-            let (desk, job) = (&self.painter.desk, self.job);
-            scope.spawn(move || {
-                while let Some(question) = desk.question() {
-                    answer(tracer, job, question);
-                }
-            });
-            self.paint(tracer, canvas);
+            let (tracer, prepass) = (&tracer, &prepass);
+            let Painter { desk, hub, .. } = self.painter;
+            let job = self.job;
+            scope.spawn(move || answer_all(desk, hub, tracer, prepass, job));
+            self.paint(tracer, *prepass, canvas);
         });
         self.left.structure = Some(tracer.into_structure());
         self.left
     }
 
-    fn say_reason(&self, samples_kept: bool, structure_kept: bool) {
+    fn say_reason(&self, samples_kept: bool, structure_kept: bool, remixed: bool) {
         let Some(change) = &self.job.change else { return };
         let what = self.job.reason.as_deref().unwrap_or("the text");
         let how = match (&change.paths, samples_kept) {
             (Paths::Kept, true) if change.developed => "developed anew, no ray traced again".to_string(),
             (Paths::Kept, true) if change.target => "all samples kept, going on".to_string(),
             (Paths::Kept, true) => "the picture is the same, all samples kept".to_string(),
+            _ if remixed => "remixed at once, re-tracing, structure kept".to_string(),
             _ if structure_kept => "re-tracing, structure kept".to_string(),
             _ => "re-tracing".to_string(),
         };
@@ -118,15 +137,52 @@ impl<'a> Painting<'a> {
         self.painter.hub.say(|status| status.reason = Some(reason));
     }
 
+    /// Where only lamps have become brighter or darker, shows at once what that does to the picture that was done.
+    fn remix(&mut self) {
+        let mix = self.left.mix.take();
+        let (Some(mut mix), Some(change)) = (mix, &self.job.change) else { return };
+        let Paths::Lamps(factors) = &change.paths else { return };
+        let factor = |source: &Source| match source {
+            Source::Light(index) => factors[*index as usize],
+            Source::Primitive(id) => {
+                let material = self.scene.primitives[id.0 as usize].material;
+                factors[self.scene.lights.len() + material.0 as usize]
+            }
+        };
+        for (sum, source) in mix.factors.iter_mut().zip(mix.shares.sources()) {
+            *sum *= factor(source);
+        }
+        let [width, _] = mix.picture.size;
+        let pixels = mix.picture.pixels.par_iter().enumerate().map(|(index, pixel)| {
+            let (x, y) = (index as u32 % width, index as u32 / width);
+            let [r, g, b] = mix.shares.factor(x, y, &mix.factors);
+            let [red, green, blue, error, alpha] = *pixel;
+            [red * r, green * g, blue * b, error, alpha]
+        });
+        let pixels = pixels.collect();
+        let frame = self.frame(pixels, 1, mix.picture.samples, true);
+        self.painter.hub.show(frame);
+        self.left.mix = Some(mix);
+    }
+
+    /// Learns how much of the picture is of which lamp, if nobody wants anything else.
+    fn learn_shares(&mut self, tracer: &Tracer, frame: Arc<Frame>) {
+        let Some(control) = self.painter.desk.begin() else { return };
+        if let Ok(Some(shares)) = tracer.shares(&control) {
+            let factors = vec![Rgb::ONE; shares.sources().len()];
+            self.left.mix = Some(Mix { picture: frame, shares, factors });
+        }
+    }
+
     /// Traces until a new job comes.
-    fn paint(&mut self, tracer: &Tracer, canvas: Option<Canvas>) {
+    fn paint(&mut self, tracer: &Tracer, prepass: Prepass, canvas: Option<Canvas>) {
         let start = Instant::now();
         let desk = &self.painter.desk;
         let fresh = canvas.is_none();
         let mut canvas = match canvas {
             Some(canvas) => canvas,
             None => {
-                let Some(canvas) = self.begin(tracer) else { return };
+                let Some(canvas) = self.begin(tracer, prepass) else { return };
                 canvas
             }
         };
@@ -142,18 +198,19 @@ impl<'a> Painting<'a> {
                     aim = next;
                     continue;
                 }
-                self.finish(&canvas, start);
+                let frame = self.finish(&canvas, start);
+                self.learn_shares(tracer, frame);
                 desk.rest(first);
                 continue;
             };
             let Some(control) = desk.begin() else { break };
             self.say_progress(&canvas, aim, State::Rendering);
             if self.step(tracer, &mut canvas, &step, &control) {
-                self.show(&canvas);
+                let frame = self.show(&canvas);
                 let level = canvas.work.level(aim);
                 if level > written && level < aim {
                     written = level;
-                    self.write(&canvas, None);
+                    self.write(&canvas, frame, None);
                 }
             }
         }
@@ -161,13 +218,12 @@ impl<'a> Painting<'a> {
     }
 
     /// Takes a first look. None if a new job comes before it is done.
-    fn begin(&mut self, tracer: &Tracer) -> Option<Canvas> {
+    fn begin(&mut self, tracer: &Tracer, prepass: Prepass) -> Option<Canvas> {
         let start = Instant::now();
         let control = self.painter.desk.begin()?;
-        let prepass = tracer.prepass();
         self.say_shown(&prepass);
         let look = tracer.look(LOOK, &control).ok()?;
-        let pixel = |seen: Option<rt_lang::color::Rgb>| match seen {
+        let pixel = |seen: Option<Rgb>| match seen {
             Some(radiance) => {
                 let [r, g, b] = radiance.to_array().map(|v| v as f32);
                 [r, g, b, f32::INFINITY, 1.0]
@@ -175,7 +231,10 @@ impl<'a> Painting<'a> {
             None => [0.0, 0.0, 0.0, f32::INFINITY, 0.0],
         };
         let look: Vec<[f32; 5]> = look.into_iter().map(pixel).collect();
-        self.frame(look.clone(), LOOK, [0, 1]);
+        if self.left.mix.is_none() {
+            let frame = self.frame(look.clone(), LOOK, [0, 1], false);
+            self.painter.hub.show(frame);
+        }
         let size = self.scene.trace.size;
         let film = Film::new(Window::whole(size), prepass.scale);
         Some(Canvas { film, prepass, work: Work::new(size), look, time: start.elapsed() })
@@ -253,21 +312,30 @@ impl<'a> Painting<'a> {
         });
     }
 
-    /// Shows what there is.
-    fn show(&mut self, canvas: &Canvas) {
+    /// Shows what there is, unless that is still worse than what was mixed.
+    fn show(&mut self, canvas: &Canvas) -> Arc<Frame> {
         self.say_shown(&canvas.prepass);
-        self.frame(pixels(canvas, self.scene.trace.size), 1, canvas.work.samples());
+        let samples = canvas.work.samples();
+        let frame = self.frame(pixels(canvas, self.scene.trace.size), 1, samples, false);
+        if samples[0] >= ENOUGH {
+            self.left.mix = None;
+        }
+        if self.left.mix.is_none() {
+            self.painter.hub.show(frame.clone());
+        }
+        frame
     }
 
-    fn frame(&mut self, pixels: Vec<[f32; 5]>, step: u32, samples: [u32; 2]) {
+    fn frame(&mut self, pixels: Vec<[f32; 5]>, step: u32, samples: [u32; 2], remixed: bool) -> Arc<Frame> {
         self.left.version += 1;
         let (generation, size) = (self.job.generation, self.scene.trace.size);
         let version = self.left.version;
-        self.painter.hub.show(Frame { generation, version, size, step, samples, pixels, remixed: false });
+        Arc::new(Frame { generation, version, size, step, samples, pixels, remixed })
     }
 
-    fn finish(&mut self, canvas: &Canvas, start: Instant) {
-        self.show(canvas);
+    fn finish(&mut self, canvas: &Canvas, start: Instant) -> Arc<Frame> {
+        self.left.mix = None;
+        let frame = self.show(canvas);
         let [samples, _] = canvas.work.samples();
         self.say_progress(canvas, samples, State::Done);
         let [width, height] = self.scene.trace.size;
@@ -275,14 +343,15 @@ impl<'a> Painting<'a> {
         let time = duration(start.elapsed());
         let line = format!("{}{width}×{height}, {samples} {unit} in {time}", self.painter.names);
         match &self.painter.writer {
-            Some(_) => self.write(canvas, (!self.painter.quiet).then_some(line)),
+            Some(_) => self.write(canvas, frame.clone(), (!self.painter.quiet).then_some(line)),
             None if !self.painter.quiet => self.painter.terminal.line(&line),
             None => {}
         }
+        frame
     }
 
-    fn write(&self, canvas: &Canvas, done: Option<String>) {
-        let (Some(writer), Some(frame)) = (&self.painter.writer, self.painter.hub.frame()) else { return };
+    fn write(&self, canvas: &Canvas, frame: Arc<Frame>, done: Option<String>) {
+        let Some(writer) = &self.painter.writer else { return };
         let render::Shown { stops, tonemap } = self.shown(&canvas.prepass);
         let [samples, _] = canvas.work.samples();
         let facts = Facts {
@@ -311,13 +380,4 @@ fn pixels(canvas: &Canvas, [width, height]: [u32; 2]) -> Vec<[f32; 5]> {
         }
     };
     (0..height).into_par_iter().flat_map_iter(row).map(pixel).collect()
-}
-
-/// Answers a question. Whoever asked may be gone.
-fn answer(tracer: &Tracer, job: &Job, question: Question) {
-    let _ = (tracer, job);
-    match question {
-        Question::Why { reply, .. } => drop(reply.send(Err("not yet".into()))),
-        Question::Light { reply, .. } => drop(reply.send(None)),
-    }
 }

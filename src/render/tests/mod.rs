@@ -13,6 +13,7 @@ mod meshes;
 mod numbers;
 mod reference;
 mod shapes;
+mod shares;
 mod skies;
 mod solids;
 mod textures;
