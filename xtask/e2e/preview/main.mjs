@@ -118,9 +118,13 @@ await check("a pixel tells what the file holds", {}, async ({ url }, scene) => {
   const { x, y } = await placeOf(page, [120, 80], SIZE);
   await page.mouse.click(x, y);
   await page.waitForSelector('#why[data-pixel="120,80"]:not([aria-busy])');
+  await page.mouse.move(0, 0);
+  const before = String(await shown(page));
   await page.locator("#why .uses .place").first().focus();
-  await pause(300);
+  await until("what stands there is lit up", async () => String(await shown(page)) !== before, 5000);
   await keep(page, "why");
+  await page.locator("#why .uses .place").first().blur();
+  await until("it is as it was", async () => String(await shown(page)) === before, 5000);
 });
 
 /// Reads a PFM: a function of x and y.
@@ -141,6 +145,27 @@ await check("a click opens the editor at the line", editor, async ({ url }, scen
 });
 
 await check("who may ask", {}, ({ url }) => guarded(url));
+
+await check("strange messages are answered", {}, async ({ url }) => {
+  const page = await open(browser, url);
+  const answers = await page.evaluate(async () => {
+    const socket = new WebSocket(new URL("socket", location.href).href.replace("http", "ws"));
+    await new Promise((resolve) => (socket.onopen = resolve));
+    const strange = ["", "{}", "[".repeat(5000), '{"type":"halt"}', '{"type":"why","id":1,"x":-1,"y":1e99}', '{"type":"open","file":"/etc/passwd","line":1,"column":1}', new Uint8Array(9)];
+    const answers = [];
+    for (const message of strange) {
+      const answer = new Promise((resolve) => (socket.onmessage = ({ data }) => typeof data === "string" && JSON.parse(data).type === "error" && resolve("answered")));
+      socket.send(message);
+      answers.push(await answer);
+    }
+    const closed = new Promise((resolve) => (socket.onclose = () => resolve("closed")));
+    socket.send(" ".repeat(70_000));
+    answers.push(await closed);
+    return answers;
+  });
+  equal(answers.join(), `${"answered,".repeat(7)}closed`, "answers");
+  equal(await page.getAttribute("#state", "data-state") !== "away", true, "the other page is still served");
+});
 
 await check("it goes on after a restart", { env: { XDG_RUNTIME_DIR: desk } }, async (watched, scene) => {
   const page = await open(browser, watched.url);
