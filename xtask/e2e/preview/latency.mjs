@@ -2,7 +2,7 @@
 // bars (640×360, about 100 primitives).
 
 import { join } from "node:path";
-import { SCENE, browse, open, pause, placeOf, save, watch } from "./setting.mjs";
+import { browse, open, pause, placeOf, save, until, watch } from "./setting.mjs";
 
 const ROUNDS = Number(process.argv[4] ?? 40);
 const SIZE = [640, 360];
@@ -45,14 +45,13 @@ function watchPaints() {
 
 const clock = () => performance.timeOrigin + performance.now();
 
-/// Waits for the first paint that suits, and gives its time.
-async function paint(page, suits, argument) {
-  const found = await page.waitForFunction(([suits, argument]) => {
-    const does = new Function("paint", "argument", `return ${suits}`);
-    return window.paints.find((paint) => does(paint, argument))?.at;
-  }, [suits, argument], { polling: 4, timeout: 60_000 });
-  return found.jsonValue();
-}
+/// Waits for the first paint of a kind, and gives its time.
+const paint = (page, kind, { after = 0, step = 8, pixel } = {}) =>
+  until(`${kind} is painted`, () => page.evaluate(
+    ([kind, after, step, pixel]) =>
+      window.paints.find((paint) => paint.kind === kind && !(paint.generation <= after) && !(paint.step > step) && paint.pixel === pixel)?.at,
+    [kind, after, step, pixel],
+  ));
 
 const times = { "save to error painted": [], "save to first pixels": [], "save to full resolution": [], inspector: [] };
 
@@ -65,26 +64,26 @@ async function measure(page) {
     await clear();
     let start = clock();
     save(scene, text(color(i)));
-    times["save to first pixels"].push((await paint(page, "paint.kind === 'picture' && paint.generation > argument", last)) - start);
-    times["save to full resolution"].push((await paint(page, "paint.kind === 'picture' && paint.generation > argument && paint.step === 1", last)) - start);
+    times["save to first pixels"].push((await paint(page, "picture", { after: last })) - start);
+    times["save to full resolution"].push((await paint(page, "picture", { after: last, step: 1 })) - start);
     await clear();
     start = clock();
     save(scene, text(color(i)).replace("radius: 8cm", "radius: 8deg"));
-    times["save to error painted"].push((await paint(page, "paint.kind === 'messages'")) - start);
+    times["save to error painted"].push((await paint(page, "messages")) - start);
     save(scene, text(color(i)));
-    await paint(page, "paint.kind === 'clear'");
+    await paint(page, "clear");
     await pause(200);
     await clear();
     const pixel = [40 + ((i * 97) % 560), 60 + ((i * 53) % 240)];
     const { x, y } = await placeOf(page, pixel, SIZE);
     start = clock();
     await page.mouse.click(x, y);
-    times.inspector.push((await paint(page, "paint.kind === 'why' && paint.pixel === argument", String(pixel))) - start);
+    times.inspector.push((await paint(page, "why", { pixel: String(pixel) })) - start);
     await page.keyboard.press("Escape");
   }
 }
 
-save(scene, text(color(0)));
+save(scene, text(color(49)));
 const browser = await browse();
 const watched = await watch(scene);
 try {

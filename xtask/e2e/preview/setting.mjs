@@ -82,7 +82,9 @@ export async function placeOf(page, [x, y], size) {
 
 /// The bytes that the page shows on its canvas, at some of its pixels: red, green, blue and alpha of each.
 export const shown = (page, count = 500) =>
-  page.evaluate((count) => {
+  page.evaluate(async (count) => {
+    // What has arrived is drawn with the next frame.
+    await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
     const stage = document.getElementById("stage");
     const { data } = stage.getContext("2d").getImageData(0, 0, stage.width, stage.height);
     const all = [];
