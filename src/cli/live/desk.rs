@@ -2,7 +2,6 @@
 
 use super::hub::{Mask, Reply};
 use crate::cli::scene::Loaded;
-use rt_lang::change::Change;
 use rt_lang::render::{Control, Window};
 use rt_lang::scene::Scene;
 use std::collections::VecDeque;
@@ -14,10 +13,8 @@ pub struct Job {
     pub generation: u64,
     /// The scene with its texts.
     pub loaded: Loaded,
-    /// What is different from the job before; none for the first.
-    pub change: Option<Change>,
-    /// What a person calls that.
-    pub reason: Option<String>,
+    /// What a person calls what is different from the text before.
+    pub names: Option<String>,
 }
 
 impl Job {

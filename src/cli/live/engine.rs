@@ -216,14 +216,10 @@ impl Engine {
         }
         let had_errors = self.said.errors > 0;
         self.said = said.clone();
-        let before = self.job.as_ref().map(|job| (job.scene(), &job.loaded));
-        let change = before.map(|(scene, _)| {
-            change::between(scene, loaded.compiled.scene.as_ref().expect("it has no errors"))
-        });
+        let before = self.job.as_ref().map(|job| &job.loaded.sources);
         let mut names = std::mem::take(&mut self.fresh);
-        names.extend(before.iter().flat_map(|(_, before)| changed(&before.sources, &loaded.sources)));
-        let reason = reason(names);
-        let job = Arc::new(Job { generation: self.generation, loaded, change, reason });
+        names.extend(before.iter().flat_map(|before| changed(before, &loaded.sources)));
+        let job = Arc::new(Job { generation: self.generation, loaded, names: listed(names) });
         let notes = job.loaded.compiled.notes.clone();
         let generation = self.generation;
         self.hub.say(|status| {
@@ -318,7 +314,7 @@ fn changed(before: &Sources, after: &Sources) -> Vec<String> {
 }
 
 /// What a person is told of them.
-fn reason(mut names: Vec<String>) -> Option<String> {
+fn listed(mut names: Vec<String>) -> Option<String> {
     names.dedup();
     names.truncate(3);
     let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();

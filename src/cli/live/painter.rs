@@ -10,7 +10,7 @@ use crate::cli::progress::duration;
 use crate::cli::terminal::Terminal;
 use rayon::ThreadPool;
 use rayon::prelude::*;
-use rt_lang::change::Paths;
+use rt_lang::change::{self, Change, Paths};
 use rt_lang::color::Rgb;
 use rt_lang::output::Facts;
 use rt_lang::render::light::Source;
@@ -24,6 +24,8 @@ use std::time::{Duration, Instant};
 
 /// A first look takes one pixel of so many across and down.
 const LOOK: u32 = 8;
+/// Between two pictures that are shown so many times as long is traced as it takes to show one.
+const SHARE: u32 = 10;
 
 /// What is traced, where it is shown, and where it goes.
 pub struct Painter {
@@ -46,6 +48,7 @@ pub struct Painter {
 /// What is left of a job when the next one comes.
 #[derive(Default)]
 struct Left {
+    job: Option<Arc<Job>>,
     structure: Option<Structure>,
     mix: Option<Mix>,
     canvas: Option<Canvas>,
@@ -72,6 +75,8 @@ struct Canvas {
     look: Vec<[f32; 5]>,
     /// How long tracing took.
     time: Duration,
+    /// The noise when all pixels had a power of two of samples last.
+    noise: Option<f64>,
 }
 
 impl Painter {
@@ -81,6 +86,7 @@ impl Painter {
         loop {
             let job = self.desk.take();
             left = self.threads.install(|| Painting::new(self, &job, left).run());
+            left.job = Some(job);
         }
     }
 }
@@ -90,17 +96,21 @@ struct Painting<'a> {
     painter: &'a Painter,
     job: &'a Job,
     scene: &'a Scene,
+    /// What is different from the job before, which need not be the text before: some are overtaken.
+    change: Option<Change>,
     left: Left,
 }
 
 impl<'a> Painting<'a> {
     fn new(painter: &'a Painter, job: &'a Job, left: Left) -> Painting<'a> {
-        Painting { painter, job, scene: job.scene(), left }
+        let scene = job.scene();
+        let change = left.job.as_ref().map(|before| change::between(before.scene(), scene));
+        Painting { painter, job, scene, change, left }
     }
 
     fn run(mut self) -> Left {
         let tracer = Tracer::with(self.scene, self.left.structure.take());
-        let kept = self.job.change.as_ref().is_some_and(|change| change.paths == Paths::Kept);
+        let kept = self.change.as_ref().is_some_and(|change| change.paths == Paths::Kept);
         let canvas = self.left.canvas.take().filter(|_| kept);
         if !kept {
             self.remix();
@@ -120,8 +130,8 @@ impl<'a> Painting<'a> {
     }
 
     fn say_reason(&self, samples_kept: bool, structure_kept: bool, remixed: bool) {
-        let Some(change) = &self.job.change else { return };
-        let what = self.job.reason.as_deref().unwrap_or("the text");
+        let Some(change) = &self.change else { return };
+        let what = self.job.names.as_deref().unwrap_or("the text");
         let how = match (&change.paths, samples_kept) {
             (Paths::Kept, true) if change.developed => "developed anew, no ray traced again".to_string(),
             (Paths::Kept, true) if change.target => "all samples kept, going on".to_string(),
@@ -140,7 +150,7 @@ impl<'a> Painting<'a> {
     /// Where only lamps have become brighter or darker, shows at once what that does to the picture that was done.
     fn remix(&mut self) {
         let mix = self.left.mix.take();
-        let (Some(mut mix), Some(change)) = (mix, &self.job.change) else { return };
+        let (Some(mut mix), Some(change)) = (mix, &self.change) else { return };
         let Paths::Lamps(factors) = &change.paths else { return };
         let factor = |source: &Source| match source {
             Source::Light(index) => factors[*index as usize],
@@ -188,8 +198,9 @@ impl<'a> Painting<'a> {
         };
         let mut aim = self.first_aim();
         let mut written = 0;
+        let (mut shown, mut cost) = (Instant::now(), Duration::ZERO);
         if !fresh {
-            self.show(&canvas);
+            self.show(&mut canvas, true);
         }
         while !desk.is_news() {
             let first = desk.first();
@@ -198,20 +209,25 @@ impl<'a> Painting<'a> {
                     aim = next;
                     continue;
                 }
-                let frame = self.finish(&canvas, start);
+                let frame = self.finish(&mut canvas, start);
                 self.learn_shares(tracer, frame);
                 desk.rest(first);
                 continue;
             };
             let Some(control) = desk.begin() else { break };
             self.say_progress(&canvas, aim, State::Rendering);
-            if self.step(tracer, &mut canvas, &step, &control) {
-                let frame = self.show(&canvas);
-                let level = canvas.work.level(aim);
-                if level > written && level < aim {
-                    written = level;
-                    self.write(&canvas, frame, None);
-                }
+            if !self.step(tracer, &mut canvas, &step, &control) {
+                continue;
+            }
+            let level = canvas.work.level(aim);
+            if level > written && level < aim {
+                written = level;
+                let frame = self.show(&mut canvas, true);
+                self.write(&canvas, frame, None);
+            } else if shown.elapsed() > SHARE * cost {
+                let start = Instant::now();
+                self.show(&mut canvas, false);
+                (shown, cost) = (Instant::now(), start.elapsed());
             }
         }
         self.left.canvas = Some(canvas);
@@ -237,7 +253,7 @@ impl<'a> Painting<'a> {
         }
         let size = self.scene.trace.size;
         let film = Film::new(Window::whole(size), prepass.scale);
-        Some(Canvas { film, prepass, work: Work::new(size), look, time: start.elapsed() })
+        Some(Canvas { film, prepass, work: Work::new(size), look, time: start.elapsed(), noise: None })
     }
 
     fn step(&self, tracer: &Tracer, canvas: &mut Canvas, step: &Step, control: &Control) -> bool {
@@ -300,7 +316,7 @@ impl<'a> Painting<'a> {
             Target::Noise(noise) => Aim::Noise(noise),
         };
         let picture = self.job.generation;
-        let noise = (samples > 1).then(|| self.noise(canvas));
+        let noise = canvas.noise;
         self.painter.hub.say(|status| {
             if status.state != State::Error {
                 status.state = if paused && state == State::Rendering { State::Paused } else { state };
@@ -313,8 +329,11 @@ impl<'a> Painting<'a> {
     }
 
     /// Shows what there is, unless that is still worse than what was mixed.
-    fn show(&mut self, canvas: &Canvas) -> Arc<Frame> {
+    fn show(&mut self, canvas: &mut Canvas, even: bool) -> Arc<Frame> {
         self.say_shown(&canvas.prepass);
+        if even && canvas.work.samples()[0] > 1 {
+            canvas.noise = Some(self.noise(canvas));
+        }
         let samples = canvas.work.samples();
         let frame = self.frame(pixels(canvas, self.scene.trace.size), 1, samples, false);
         if samples[0] >= ENOUGH {
@@ -333,9 +352,9 @@ impl<'a> Painting<'a> {
         Arc::new(Frame { generation, version, size, step, samples, pixels, remixed })
     }
 
-    fn finish(&mut self, canvas: &Canvas, start: Instant) -> Arc<Frame> {
+    fn finish(&mut self, canvas: &mut Canvas, start: Instant) -> Arc<Frame> {
         self.left.mix = None;
-        let frame = self.show(canvas);
+        let frame = self.show(canvas, true);
         let [samples, _] = canvas.work.samples();
         self.say_progress(canvas, samples, State::Done);
         let [width, height] = self.scene.trace.size;
