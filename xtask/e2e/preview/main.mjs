@@ -30,7 +30,12 @@ async function check(name, flags, does) {
   }
 }
 
-const keep = (page, name) => page.screenshot({ path: join(desk, `${name}.png`) });
+/// Keeps a picture of the page, of which nothing may stick out.
+async function keep(page, name, options = {}) {
+  const beyond = await page.evaluate(() => Math.max(...[...document.querySelectorAll("body, body *:not(#stage, pre *, .tools *)")].map((part) => part.getBoundingClientRect().right)) - innerWidth);
+  assert(beyond < 1, `${name}: something sticks out by ${beyond} pixels`);
+  await page.screenshot({ path: join(desk, `${name}.png`), ...options });
+}
 const generation = (page) => page.locator("#stage").getAttribute("data-generation").then(Number);
 /// Waits until the picture is of another text than it was.
 const newer = (page, than) => until("a newer picture is shown", async () => (await generation(page)) > than);
@@ -45,7 +50,7 @@ await check("a picture arrives", {}, async ({ url }) => {
   const light = await open(browser, url, { colorScheme: "light" });
   await keep(light, "light");
   const narrow = await open(browser, url, { viewport: { width: 390, height: 780 } });
-  await narrow.screenshot({ path: join(desk, "narrow.png"), fullPage: true });
+  await keep(narrow, "narrow", { fullPage: true });
   equal([...page.problems, ...light.problems, ...narrow.problems].join("; "), "", "what the console says");
 });
 
