@@ -2,14 +2,18 @@
 
 mod tools;
 mod values;
+mod why;
 
 use clap::{Args, Parser, Subcommand};
 use rt_lang::output::Depth;
 use rt_lang::schema::Tonemap;
 use std::path::PathBuf;
-pub use tools::{Check, Completions, Expand, Explain, Export, Info, Init, Man, Messages, Reading, Show};
+pub use tools::{
+    Check, Completions, Expand, Explain, Export, Info, Init, Man, Messages, Reading, Show, Viewpoint,
+};
 pub use values::Denied;
 use values::{crop, depths, exposure, samples, seed, size, stops, threads, tonemaps};
+pub use why::Why;
 
 /// Renders .rt scenes: a small text that describes a picture becomes the picture.
 ///
@@ -78,6 +82,9 @@ pub enum Command {
     Explain(Explain),
     /// Tells what is in a scene: parameters, cameras, counts, bounds, files, and what it takes to draw it.
     Info(Info),
+    /// Tells why a pixel looks as it does: what it shows, and which lights give it its colour, by which paths.
+    #[command(after_help = why::EXAMPLES)]
+    Why(Why),
     /// Writes a scene as a flat one, without loops, parts and names, that gives the same picture to the bit.
     Expand(Expand),
     /// Writes a scene for another renderer: Mitsuba 3, pbrt-v4 or POV-Ray.

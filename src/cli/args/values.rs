@@ -57,6 +57,12 @@ pub fn crop(text: &str) -> Result<[u32; 4], String> {
     }
 }
 
+pub fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let parts =
+        text.split_once(',').and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));
+    parts.ok_or_else(|| "column and row in whole pixels, such as 320,240".into())
+}
+
 pub fn exposure(text: &str) -> Result<Exposure, String> {
     if text == "auto" {
         return Ok(Exposure::Auto);
