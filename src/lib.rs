@@ -26,6 +26,7 @@
 //! | [`lint`] | what is probably not meant in a scene | text |
 //! | [`render`] | scene to film; cannot fail | places, files, syntax |
 //! | [`output`] | film to the bytes of image files, and back | files |
+//! | [`aov`] | what a picture shows besides its light, as channels | files |
 //! | [`explain`] | the page on each diagnostic | how it is shown |
 //! | [`inventory`] | what stands in a picture, counted | how it is shown |
 //! | [`mend`] | applying the edits that diagnostics offer | files |
@@ -34,6 +35,7 @@
 
 pub mod asset;
 mod allow;
+pub mod aov;
 pub mod check;
 pub mod color;
 pub mod develop;

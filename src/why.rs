@@ -9,7 +9,7 @@ use crate::lower::Marks;
 use crate::render::apart::Apart;
 use crate::render::light::Source;
 use crate::render::observer::PathKind;
-use crate::scene::{Light, Material, OriginId, PrimitiveId, Scene};
+use crate::scene::{Light, Material, OriginId, Primitive, PrimitiveId, Scene};
 use crate::source::{Place, Sources};
 use crate::span::Span;
 use serde::Serialize;
@@ -189,12 +189,16 @@ impl<'a> Provenance<'a> {
     /// The thing that a primitive is.
     pub fn thing(&self, id: PrimitiveId) -> ThingAt<'a> {
         let primitive = &self.scene.primitives[id.0 as usize];
+        let alike = |other: &Primitive| other.origin == primitive.origin;
+        let number = number(self.scene.primitives.iter().map(alike), id.0);
+        ThingAt { number, ..self.thing_of(id) }
+    }
+
+    /// The same without its number, which takes a look at all others.
+    pub fn thing_of(&self, id: PrimitiveId) -> ThingAt<'a> {
+        let primitive = &self.scene.primitives[id.0 as usize];
         let kind = if self.is_lamp(id) { "light" } else { primitive.shape.kind() };
-        let number = || {
-            let alike = |other: &crate::scene::Primitive| other.origin == primitive.origin;
-            number(self.scene.primitives.iter().map(alike), id.0)
-        };
-        ThingAt { kind, number: number(), uses: self.uses(primitive.origin) }
+        ThingAt { kind, number: None, uses: self.uses(primitive.origin) }
     }
 
     /// The thing that a source of light is.

@@ -43,6 +43,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ("mend", &["span", "diagnostic"]),
     ("report", &["span", "source", "diagnostic", "explain"]),
     // It names what the tracer found, by what lowering kept beside the scene.
+    ("aov", &["math", "scene", "output", "render", "why"]),
     ("why", &["span", "source", "color", "eval", "scene", "lower", "render"]),
 ];
 
