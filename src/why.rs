@@ -3,6 +3,8 @@
 //! A pixel is taken apart by watching the very paths that make it ([`Apart`]); the parts add up to it. Here they get their
 //! names and places.
 
+mod feedback;
+
 use crate::color::{Rgb, luminance};
 use crate::eval::Origins;
 use crate::lower::Marks;

@@ -42,9 +42,9 @@ const EDGES: &[(&str, &[&str])] = &[
     ("inventory", &["source", "schema", "check", "eval", "scene"]),
     ("mend", &["span", "diagnostic"]),
     ("report", &["span", "source", "diagnostic", "explain"]),
-    // It names what the tracer found, by what lowering kept beside the scene.
     ("aov", &["math", "scene", "output", "render", "why"]),
-    ("why", &["span", "source", "color", "eval", "scene", "lower", "render"]),
+    // It names what the tracer found, by what lowering kept beside the scene.
+    ("why", &["span", "source", "diagnostic", "color", "eval", "scene", "lower", "render"]),
 ];
 
 #[test]

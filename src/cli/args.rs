@@ -5,6 +5,7 @@ mod values;
 mod why;
 
 use clap::{Args, Parser, Subcommand};
+use rt_lang::aov::Aov;
 use rt_lang::output::Depth;
 use rt_lang::schema::Tonemap;
 use std::path::PathBuf;
@@ -12,7 +13,7 @@ pub use tools::{
     Check, Completions, Expand, Explain, Export, Info, Init, Man, Messages, Reading, Show, Viewpoint,
 };
 pub use values::Denied;
-use values::{crop, depths, exposure, samples, seed, size, stops, threads, tonemaps};
+use values::{aov, crop, depths, exposure, samples, seed, size, stops, threads, tonemaps};
 pub use why::Why;
 
 /// Renders .rt scenes: a small text that describes a picture becomes the picture.
@@ -107,6 +108,7 @@ const BUILD_EXAMPLES: &str = "\
 Examples:
   rtc build balls.rt --size 160x120 --samples 8      a quick look
   rtc build balls.rt -o balls.png -o balls.exr       one picture in two forms
+  rtc build balls.rt -o balls.exr --aov depth,object what else a picture shows
   rtc build balls.rt --crop 0,0,320,240 -o part.exr  only the top left quarter
   rtc build *.rt                                     each picture beside its scene
   cat balls.rt | rtc build - -o - > balls.png        standard input and output";
@@ -186,6 +188,16 @@ pub struct Build {
     /// chooses by the scene and prints the number.
     #[arg(long, value_name = "STOPS|auto", value_parser = exposure, allow_negative_numbers = true)]
     pub exposure: Option<Exposure>,
+
+    /// Adds channels of what the picture shows besides its light to its EXR: depth, normal, albedo, samples, error, and
+    /// object and material as Cryptomatte; several with commas between.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = aov())]
+    pub aov: Vec<Aov>,
+
+    /// Watches some paths once the picture is made, and tells what makes its noise, which lights give nothing, what no
+    /// path meets, and what the limit of bounces costs.
+    #[arg(long)]
+    pub feedback: bool,
 
     #[command(flatten)]
     #[allow(missing_docs)]
