@@ -66,7 +66,9 @@ fn step(used: &Used) -> String {
     let head = used.text.split('{').next().unwrap_or_default();
     let mut words = head.split_whitespace().filter(|word| !word.starts_with('@'));
     match (words.next(), words.next()) {
-        (Some(keyword @ ("for" | "if")), _) => placed(keyword, used),
+        (Some(keyword @ ("for" | "if")), _) => {
+            placed(keyword, used) + &used.turn.map_or(String::new(), |turn| format!("[{turn}]"))
+        }
         (Some(_), Some(name)) => name.to_string(),
         (kind, _) => placed(kind.unwrap_or_default(), used),
     }

@@ -106,7 +106,8 @@ fn pointed_at(shown: &Shown, sources: &Sources, style: Style) -> String {
         format!("of {named}`{}`{at}", material.kind)
     });
     let Some((own, uses)) = thing.uses.split_last() else { return message + "\n" };
-    let uses: Vec<Use> = uses.iter().map(|used| Use::from(used.span)).collect();
+    let shown = |used: &Used| Use { span: used.span, turn: used.turn.map(str::to_string) };
+    let uses: Vec<Use> = uses.iter().map(shown).collect();
     report::remark(&message, &Label { span: own.span, text: made_of }, &uses, sources, style)
 }
 
@@ -157,7 +158,9 @@ fn table<T>(head: &str, parts: &[T], row: impl Fn(&T) -> (String, f64, [f64; 3])
 fn light_name(light: &LightShare) -> String {
     let LightShare { thing, count, .. } = light;
     let ThingAt { kind, number, uses } = thing;
+    let turns: Vec<&str> = uses.iter().filter_map(|used| used.turn).collect();
     let which = match number {
+        None if !turns.is_empty() => format!(" ({})", turns.join(", ")),
         Some(number) => format!(" number {} of {}", number.this, number.of),
         None if *count > 1 => format!(", {count} of them"),
         None => String::new(),

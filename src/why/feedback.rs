@@ -6,6 +6,7 @@ use crate::render::feedback::Feedback;
 use crate::render::light::Source;
 use crate::render::observer::PathKind;
 use crate::scene::{Material, OriginId, PrimitiveId};
+use crate::span::{SourceId, Span};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The least noise of a picture, as a share of white, whose cause is worth a word: half of it nobody sees.
@@ -79,16 +80,11 @@ impl Provenance<'_> {
 
     /// Lights of which no path brought any, each place once.
     fn idle_lights(&self, feedback: &Feedback) -> impl Iterator<Item = Diagnostic> {
-        let giving: BTreeSet<OriginId> =
-            feedback.giving.iter().filter_map(|source| self.origin(*source)).collect();
-        let mut idle: BTreeMap<OriginId, &'static str> = BTreeMap::new();
-        for source in self.all_sources() {
-            if let Some(origin) = self.origin(source).filter(|origin| !giving.contains(origin)) {
-                idle.entry(origin).or_insert_with(|| self.thing_kind(source));
-            }
-        }
+        let giving = feedback.giving.iter().filter_map(|source| self.origin(*source));
+        let all =
+            self.all_sources().filter_map(|source| Some((self.origin(source)?, self.thing_kind(source))));
         let paths = feedback.paths;
-        idle.into_iter().map(move |(origin, kind)| {
+        self.without(giving, all).into_iter().map(move |(origin, kind)| {
             let message = format!("this `{kind}` gives nothing to the picture");
             self.about(Code::W0705, message, origin)
                 .at(format!("none of {paths} paths brought light of it"))
@@ -96,22 +92,33 @@ impl Provenance<'_> {
         })
     }
 
-    /// Things that no path met, each place once. A light that gives anything counts as met.
+    /// Things that no path met, each place once. A light counts as met: of these there is more to say.
     fn never_met(&self, feedback: &Feedback) -> impl Iterator<Item = Diagnostic> {
         let origin = |id: &PrimitiveId| self.scene.primitives[id.0 as usize].origin;
-        let mut met: BTreeSet<OriginId> = feedback.met.iter().map(origin).collect();
-        met.extend(self.all_sources().filter_map(|source| self.origin(source)));
-        let mut unmet: BTreeMap<OriginId, &'static str> = BTreeMap::new();
-        for primitive in self.scene.primitives.iter().filter(|primitive| !met.contains(&primitive.origin)) {
-            unmet.entry(primitive.origin).or_insert_with(|| primitive.shape.kind());
-        }
+        let lights = self.all_sources().filter_map(|source| self.origin(source));
+        let met = feedback.met.iter().map(origin).chain(lights);
+        let all = self.scene.primitives.iter().map(|primitive| (primitive.origin, primitive.shape.kind()));
         let paths = feedback.paths;
-        unmet.into_iter().map(move |(origin, kind)| {
+        self.without(met, all).into_iter().map(move |(origin, kind)| {
             let message = format!("no path meets this `{kind}`");
             self.about(Code::W0706, message, origin).at(format!("none of {paths} came here")).help(
                 "if it is not where you want it, look at its `at` and its size; else leave it out: `@off`",
             )
         })
+    }
+
+    /// One thing for each place of some things at whose place none of the others stands: turns of a loop are one place.
+    fn without(
+        &self,
+        others: impl Iterator<Item = OriginId>,
+        all: impl Iterator<Item = (OriginId, &'static str)>,
+    ) -> Vec<(OriginId, &'static str)> {
+        let others: BTreeSet<OriginId> = others.collect();
+        let mut places: BTreeSet<Vec<Span>> =
+            others.iter().map(|origin| self.origins.chain(*origin)).collect();
+        let all: BTreeMap<OriginId, &'static str> =
+            all.filter(|(origin, _)| !others.contains(origin)).collect();
+        all.into_iter().filter(|(origin, _)| places.insert(self.origins.chain(*origin))).collect()
     }
 
     /// All that may give light.
@@ -142,7 +149,7 @@ impl Provenance<'_> {
     /// Points at another thing: at the innermost of its places that is not the primary one.
     fn label(&self, diagnostic: Diagnostic, origin: OriginId, text: String) -> Diagnostic {
         let primary = diagnostic.primary.span;
-        let apart = |place: &crate::span::Span| !place.contains(primary) && !primary.contains(*place);
+        let apart = |place: &Span| !place.contains(primary) && !primary.contains(*place);
         match self.origins.chain(origin).into_iter().rev().find(apart) {
             Some(span) => diagnostic.label(span, text),
             None => diagnostic,
@@ -151,8 +158,8 @@ impl Provenance<'_> {
 }
 
 /// Where nothing was written.
-fn start() -> crate::span::Span {
-    crate::span::Span::new(crate::span::SourceId(0), 0, 0)
+fn start() -> Span {
+    Span::new(SourceId(0), 0, 0)
 }
 
 /// Kinds of paths, as far as they matter for what to do about noise.

@@ -177,12 +177,15 @@ fn mattes_are_read_by_name() {
     desk.run("build -q pots.rt -o pots.exr --aov object,material").expect(0, &[]);
     let objects = mattes(&desk.get("pots.exr"), "CryptoObject");
     let names: Vec<&str> = objects.keys().map(String::as_str).collect();
-    assert_eq!(names, ["plane:14:1", "pots.for:4:3.pot#1", "pots.for:4:3.pot#2", "pots.for:4:3.pot#3"]);
+    assert_eq!(
+        names,
+        ["plane:14:1", "pots.for:4:3[i = 0].pot", "pots.for:4:3[i = 1].pot", "pots.for:4:3[i = 2].pot"]
+    );
     let materials = mattes(&desk.get("pots.exr"), "CryptoMaterial");
     let names: Vec<&str> = materials.keys().map(String::as_str).collect();
     assert_eq!(names, ["clay", "diffuse:14:18", "glass"]);
-    assert_eq!(materials["glass"], objects["pots.for:4:3.pot#2"]);
-    assert_eq!(objects["pots.for:4:3.pot#2"][24 * 64 + 32], 1.0);
+    assert_eq!(materials["glass"], objects["pots.for:4:3[i = 1].pot"]);
+    assert_eq!(objects["pots.for:4:3[i = 1].pot"][24 * 64 + 32], 1.0);
     // All that covers a pixel adds up to it, or to nothing where the sky is.
     for pixel in 0..64 * 48 {
         let sum: f32 = objects.values().map(|matte| matte[pixel]).sum();
@@ -193,7 +196,7 @@ fn mattes_are_read_by_name() {
     }
     // Left and right are alike, but for noise at the edges.
     let area = |name: &str| objects[name].iter().sum::<f32>();
-    let [left, right] = [area("pots.for:4:3.pot#1"), area("pots.for:4:3.pot#3")];
+    let [left, right] = [area("pots.for:4:3[i = 0].pot"), area("pots.for:4:3[i = 2].pot")];
     assert!((left - right).abs() < 0.01 * left, "{left} and {right}");
 }
 
