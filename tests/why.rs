@@ -152,7 +152,7 @@ group row {
     sphere { at: ((i - 1) * 1m, 0, 0), radius: 40cm, material: shiny }
   }
 }
-lamp left { at: (-1, 1, 0)m }
+lamp left { at: (-1, 1, 2)m }
 light { at: (0, 5, 5)m, power: 60W }
 camera { from: (0, 0, 5)m, look: (0, 0, 0)m, fov: 40deg }
 ";
@@ -172,7 +172,7 @@ camera { from: (0, 0, 5)m, look: (0, 0, 0)m, fov: 40deg }
     assert_eq!(material.place.as_ref().unwrap().text, "brass { roughness: 10% }");
     let bulb = why.lights.iter().find(|light| light.thing.kind == "sphere").unwrap();
     let uses: Vec<&str> = bulb.thing.uses.iter().map(|used| used.text).collect();
-    assert_eq!(uses[0], "lamp left { at: (-1, 1, 0)m }");
+    assert_eq!(uses[0], "lamp left { at: (-1, 1, 2)m }");
     assert!(uses[1].starts_with("sphere bulb"));
     let shares: f64 = why.lights.iter().map(|light| light.share).sum();
     assert!((shares - 1.0).abs() < 1e-9);

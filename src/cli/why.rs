@@ -98,7 +98,8 @@ fn pointed_at(shown: &Shown, sources: &Sources, style: Style) -> String {
     let which = thing.number.map_or(String::new(), |number| {
         format!(", number {} of the {} that are made there", number.this, number.of)
     });
-    let message = format!("{} of it shows a `{}`{which}", percent(*share), thing.kind);
+    let much = if *share > 0.9995 { "it".into() } else { format!("{} of it", percent(*share)) };
+    let message = format!("{much} shows a `{}`{which}", thing.kind);
     let made_of = material.as_ref().map_or(String::new(), |material| {
         let named = material.name.map_or(String::new(), |name| format!("`{name}`, a "));
         let at =

@@ -183,7 +183,7 @@ fn mattes_are_read_by_name() {
     );
     let materials = mattes(&desk.get("pots.exr"), "CryptoMaterial");
     let names: Vec<&str> = materials.keys().map(String::as_str).collect();
-    assert_eq!(names, ["clay", "diffuse:14:18", "glass"]);
+    assert_eq!(names, ["clay", "diffuse:14:19", "glass"]);
     assert_eq!(materials["glass"], objects["pots.for:4:3[i = 1].pot"]);
     assert_eq!(objects["pots.for:4:3[i = 1].pot"][24 * 64 + 32], 1.0);
     // All that covers a pixel adds up to it, or to nothing where the sky is.

@@ -29,6 +29,7 @@ const STEPS: &[(&str, Step)] = &[
     ("licences", licences),
     ("reference", reference::agreement),
     ("export", export::agreement),
+    ("mattes", mattes),
     ("processors", processors::same_bits),
     ("readme", readme::commands),
 ];
@@ -50,6 +51,7 @@ cargo xtask e2e [STEP…]
   licences   every dependency's licence is one that deny.toml allows
   reference  the room against a converged picture of another renderer (minutes)
   export     exported scenes against Mitsuba (from PyPI) and POV-Ray (povray, of Debian)
+  mattes     Cryptomatte by an independent reader (from PyPI)
   processors the same bytes on other processors, by emulation (qemu-user, gcc-aarch64-linux-gnu)
   readme     every command of the README, in a fresh clone of HEAD
 
@@ -190,6 +192,11 @@ fn full_disk(place: &Place) -> Outcome {
 
 fn memory(place: &Place) -> Outcome {
     script(place, "bash", "memory.sh")
+}
+
+fn mattes(place: &Place) -> Outcome {
+    let python = tools::cryptomatte(&place.desk.with_file_name("cryptomatte"))?;
+    script(place, &python.to_string_lossy(), "mattes.py")
 }
 
 fn licences(place: &Place) -> Outcome {
