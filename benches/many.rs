@@ -89,14 +89,16 @@ fn balls(count: u32) -> Scene {
     let compiled = compile(&Alone, &mut sources, main, &Options::default());
     let mut scene = compiled.scene.unwrap_or_else(|| panic!("{:#?}", compiled.diagnostics));
     let (mut random, mut all) = (Random(1), vec![]);
-    let ball = scene.primitives.remove(0);
+    let ball = scene.primitives[0].clone();
     for i in 0..count {
         let x = f64::from(i) % side + 0.5 - side / 2.0 + 0.3 * random.next();
         let z = (f64::from(i) / side).floor() + 0.5 - side / 2.0 + 0.3 * random.next();
         let shape = Shape::Sphere { center: DVec3::new(x, 0.35, z), radius: 0.2 + 0.15 * random.next() };
         all.push(Primitive { shape, ..ball.clone() });
     }
-    scene.primitives.append(&mut all);
+    let primitives = Arc::make_mut(&mut scene.primitives);
+    primitives.remove(0);
+    primitives.append(&mut all);
     scene
 }
 

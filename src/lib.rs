@@ -28,6 +28,7 @@
 //! | [`output`] | film to the bytes of image files, and back | files |
 //! | [`aov`] | what a picture shows besides its light, as channels | files |
 //! | [`explain`] | the page on each diagnostic | how it is shown |
+//! | [`change`] | what is different between a scene and the one before it | where it is shown |
 //! | [`inventory`] | what stands in a picture, counted | how it is shown |
 //! | [`mend`] | applying the edits that diagnostics offer | files |
 //! | [`report`] | diagnostics to text, for a person or a program | what they are about |
@@ -36,6 +37,7 @@
 pub mod asset;
 mod allow;
 pub mod aov;
+pub mod change;
 pub mod check;
 pub mod color;
 pub mod develop;
@@ -154,11 +156,15 @@ fn stages(
     diagnostics.extend(found);
     let lowered = lower::lower(&things, &options.overrides, files, sources, &meshes);
     diagnostics.extend(lowered.diagnostics);
+    check::blame(&settings, sources, main, &mut diagnostics);
     if !diagnostic::any_errors(&diagnostics) {
         diagnostics.extend(lower::nothing_to_see(&things, main));
     }
     if let Some(scene) = lowered.scene.as_ref().filter(|_| !diagnostic::any_errors(&diagnostics)) {
         diagnostics.extend(lint::lint(scene, &things.origins, &lowered.marks));
+        for (camera, marks) in &lowered.others {
+            diagnostics.extend(lint::look_through(scene, camera, &things.origins, marks));
+        }
     }
     let unused = allow::allow(&program.allows, &mut diagnostics);
     diagnostics.extend(unused);

@@ -40,6 +40,15 @@ impl Source {
         (line + 1, column + 1)
     }
 
+    /// The byte at a line and column, both from 1; a column past the end of its line is the end. None where there is no such
+    /// line.
+    pub fn byte(&self, line: usize, column: usize) -> Option<usize> {
+        let start = *self.line_starts.get(line.checked_sub(1)?)? as usize;
+        let range = self.line_range(start);
+        let within = self.text[range.clone()].char_indices().nth(column.saturating_sub(1));
+        Some(within.map_or(range.end, |(byte, _)| start + byte))
+    }
+
     /// The bytes of the line that holds a byte, without the line's end.
     pub fn line_range(&self, byte: usize) -> std::ops::Range<usize> {
         let line = self.line_starts.partition_point(|&start| start as usize <= byte) - 1;
@@ -93,6 +102,21 @@ impl Sources {
     /// The source with this id, which came from [`Sources::add`] of this table.
     pub fn get(&self, id: SourceId) -> &Source {
         &self.all[id.0 as usize]
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.all.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    /// Each with its id.
+    pub fn iter(&self) -> impl Iterator<Item = (SourceId, &Source)> {
+        (0..).map(SourceId).zip(&self.all)
     }
 
     /// Where a span lies, as programs are told of it.

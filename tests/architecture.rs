@@ -33,12 +33,14 @@ const EDGES: &[(&str, &[&str])] = &[
         &["span", "source", "diagnostic", "files", "math", "color", "schema", "eval", "asset", "scene"],
     ),
     // Where pictures and meshes were read stands beside the scene.
-    ("expand", &["files", "math", "color", "scene"]),
+    // What it writes is laid out as `rtc fmt` does.
+    ("expand", &["span", "files", "math", "color", "syntax", "scene"]),
     ("export", &["asset", "math", "color", "scene"]),
     ("lint", &["span", "diagnostic", "math", "color", "eval", "scene", "lower"]),
     ("render", &["math", "color", "develop", "asset", "scene"]),
     ("output", &["math", "color", "develop", "scene"]),
     ("explain", &["diagnostic"]),
+    ("change", &["span", "color", "scene", "syntax"]),
     ("inventory", &["source", "schema", "check", "eval", "scene"]),
     ("mend", &["span", "diagnostic"]),
     ("report", &["span", "source", "diagnostic", "explain"]),

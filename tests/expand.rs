@@ -20,7 +20,7 @@ fn the_flat_text_compiles_to_the_same_scene() {
             self::scene(&flat, &path).unwrap_or_else(|| panic!("{} gives no scene:\n{flat}", path.display()));
         let name = path.display();
         assert_eq!(again.primitives.len(), scene.primitives.len(), "{name}");
-        for (found, wanted) in again.primitives.iter().zip(&scene.primitives) {
+        for (found, wanted) in again.primitives.iter().zip(scene.primitives.iter()) {
             assert_eq!(
                 (&found.shape, found.material, found.frame),
                 (&wanted.shape, wanted.material, wanted.frame),

@@ -118,7 +118,7 @@ proptest! {
             let mut sources = Sources::default();
             let id = sources.add(Source::new("main.rt", text));
             let compiled = compile(&NoFiles, &mut sources, id, &Options::default());
-            let primitives = compiled.scene.iter().flat_map(|scene| &scene.primitives);
+            let primitives = compiled.scene.iter().flat_map(|scene| scene.primitives.iter());
             let origins: Vec<_> = primitives.map(|each| compiled.origins.chain(each.origin)).collect();
             (format!("{:?}", compiled.diagnostics), compiled.scene, origins)
         };

@@ -23,11 +23,11 @@ impl<'a> Names<'a> {
     pub(super) fn of_objects(&self, pixels: &[&Firsts]) -> NameOf {
         let seen = seen(pixels);
         let mut counts: BTreeMap<OriginId, [usize; 2]> = BTreeMap::new();
-        for primitive in &self.from.scene.primitives {
+        for primitive in self.from.scene.primitives.iter() {
             counts.entry(primitive.origin).or_default()[1] += 1;
         }
         let mut names = NameOf::new();
-        for (id, primitive) in (0..).map(PrimitiveId).zip(&self.from.scene.primitives) {
+        for (id, primitive) in (0..).map(PrimitiveId).zip(self.from.scene.primitives.iter()) {
             let Some([before, all]) = counts.get_mut(&primitive.origin) else { continue };
             *before += 1;
             if seen.contains(&id) {

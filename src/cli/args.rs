@@ -6,14 +6,16 @@ mod why;
 
 use clap::{Args, Parser, Subcommand};
 use rt_lang::aov::Aov;
+use rt_lang::lower::Overrides;
 use rt_lang::output::Depth;
 use rt_lang::schema::Tonemap;
+use std::net::SocketAddr;
 use std::path::PathBuf;
 pub use tools::{
     Check, Completions, Expand, Explain, Export, Info, Init, Man, Messages, Reading, Show, Viewpoint,
 };
 pub use values::Denied;
-use values::{aov, crop, depths, exposure, samples, seed, size, stops, threads, tonemaps};
+use values::{address, aov, crop, depths, exposure, samples, seed, size, stops, threads, tonemaps};
 pub use why::Why;
 
 /// Renders .rt scenes: a small text that describes a picture becomes the picture.
@@ -72,6 +74,9 @@ pub enum Command {
     /// Makes pictures from scenes.
     #[command(after_help = BUILD_EXAMPLES)]
     Build(Build),
+    /// Makes the picture again whenever the scene is saved, and shows it in a browser if you like.
+    #[command(after_help = WATCH_EXAMPLES)]
+    Watch(Watch),
     /// Looks for mistakes in scenes, and makes no picture.
     #[command(after_help = tools::CHECK_EXAMPLES)]
     Check(Check),
@@ -112,6 +117,14 @@ Examples:
   rtc build balls.rt --crop 0,0,320,240 -o part.exr  only the top left quarter
   rtc build *.rt                                     each picture beside its scene
   cat balls.rt | rtc build - -o - > balls.png        standard input and output";
+
+const WATCH_EXAMPLES: &str = "\
+Examples:
+  rtc watch balls.rt                       balls.png follows the text
+  rtc watch balls.rt --serve --open        a page that shows it, with a slider for every param
+  rtc watch balls.rt -o look.exr --samples 1024
+
+It ends with Ctrl-C.";
 
 const DEVELOP_EXAMPLES: &str = "\
 Examples:
@@ -158,6 +171,41 @@ pub struct Build {
     #[arg(short, long = "output", value_name = "OUT")]
     pub outputs: Vec<PathBuf>,
 
+    /// Traces only a window: X and Y of its top left pixel, counted from 0 at the top left of the picture, then
+    /// its width and height. Its pixels are those of the whole picture.
+    #[arg(long, value_name = "X,Y,W,H", value_parser = crop)]
+    pub crop: Option<[u32; 4]>,
+
+    /// Adds channels of what the picture shows besides its light to its EXR: depth, normal, albedo, samples, error, and
+    /// object and material as Cryptomatte; several with commas between.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = aov())]
+    pub aov: Vec<Aov>,
+
+    /// Watches some paths once the picture is made, and tells what makes its noise, which lights give nothing, what no
+    /// path meets, and what the limit of bounces costs.
+    #[arg(long)]
+    pub feedback: bool,
+
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub taking: Taking,
+
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub reading: Reading,
+
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub messages: Messages,
+
+    /// Says nothing but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// How a picture is taken, in place of what the scene says.
+#[derive(Args)]
+pub struct Taking {
     /// Makes the picture this many pixels wide and high, in place of the scene's `size`.
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
@@ -179,37 +227,81 @@ pub struct Build {
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
 
-    /// Traces only a window: X and Y of its top left pixel, counted from 0 at the top left of the picture, then
-    /// its width and height. Its pixels are those of the whole picture.
-    #[arg(long, value_name = "X,Y,W,H", value_parser = crop)]
-    pub crop: Option<[u32; 4]>,
-
     /// Brightens by this many stops, in place of the camera's `exposure`: 1 is twice as bright, -1 half. `auto`
     /// chooses by the scene and prints the number.
     #[arg(long, value_name = "STOPS|auto", value_parser = exposure, allow_negative_numbers = true)]
     pub exposure: Option<Exposure>,
 
-    /// Adds channels of what the picture shows besides its light to its EXR: depth, normal, albedo, samples, error, and
-    /// object and material as Cryptomatte; several with commas between.
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = aov())]
-    pub aov: Vec<Aov>,
-
-    /// Watches some paths once the picture is made, and tells what makes its noise, which lights give nothing, what no
-    /// path meets, and what the limit of bounces costs.
-    #[arg(long)]
-    pub feedback: bool,
-
     #[command(flatten)]
     #[allow(missing_docs)]
     pub look: Look,
+}
+
+impl Taking {
+    /// What the compiler is told of it.
+    pub fn overrides(&self) -> Overrides {
+        Overrides {
+            camera: self.camera.clone(),
+            every_camera: false,
+            size: self.size,
+            samples: self.samples,
+            seed: self.seed,
+            exposure: self.exposure.map(|exposure| match exposure {
+                Exposure::Auto => None,
+                Exposure::Stops(stops) => Some(stops),
+            }),
+            tonemap: self.look.tonemap,
+        }
+    }
+}
+
+/// Flags of `rtc watch`.
+#[derive(Args)]
+pub struct Watch {
+    /// The scene to follow.
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+
+    /// Writes the picture here whenever its samples have doubled, in the format of the extension. May be given several
+    /// times. Without it the picture goes beside its scene as PNG, or with `--serve` nowhere.
+    #[arg(short, long = "output", value_name = "OUT")]
+    pub outputs: Vec<PathBuf>,
+
+    /// Shows the picture on a page of this machine alone, and prints the page's address on standard output. Without a
+    /// port on one that is free.
+    #[arg(long, value_name = "127.0.0.1:PORT", num_args = 0..=1, require_equals = true,
+        default_missing_value = "127.0.0.1:0", value_parser = address)]
+    pub serve: Option<SocketAddr>,
+
+    /// Opens the page in the browser.
+    #[arg(long, requires = "serve")]
+    pub open: bool,
+
+    /// Where places in the page lead: {file}, {line} and {column} are put in.
+    #[arg(
+        long,
+        value_name = "TEMPLATE",
+        requires = "serve",
+        default_value = "vscode://file{file}:{line}:{column}"
+    )]
+    pub editor_url: String,
+
+    /// Lets places in the page run the command that RTC_EDITOR names, with {file}, {line} and {column} put in.
+    #[arg(long, requires = "serve")]
+    pub open_with: bool,
+
+    /// Looks for changes every so many milliseconds, where the system does not tell of them.
+    #[arg(long, value_name = "MS", num_args = 0..=1, require_equals = true, default_missing_value = "500",
+        value_parser = clap::value_parser!(u64).range(1..=3_600_000))]
+    pub poll: Option<u64>,
+
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub taking: Taking,
 
     #[command(flatten)]
     #[allow(missing_docs)]
     pub reading: Reading,
-
-    #[command(flatten)]
-    #[allow(missing_docs)]
-    pub messages: Messages,
 
     /// Says nothing but errors.
     #[arg(short, long)]

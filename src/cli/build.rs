@@ -1,6 +1,6 @@
 //! `rtc build`: scenes to pictures.
 
-use super::args::{Build, Exposure};
+use super::args::Build;
 use super::input::is_standard;
 use super::interrupt::Interrupt;
 use super::messages::{Messenger, on_standard_output};
@@ -11,10 +11,9 @@ use super::{Exit, Problem, scene as scenes};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use rt_lang::aov::{self, Aov};
 use rt_lang::diagnostic::Diagnostic;
-use rt_lang::lower::Overrides;
 use rt_lang::output::{Channels, Depth, Facts, Format, Picture, encode, encode_exr};
 use rt_lang::render::feedback::Feedback;
-use rt_lang::render::{Cancelled, Control, Rendered, Shown, Tracer, Window};
+use rt_lang::render::{Cancelled, Control, Prepass, Rendered, Shown, Tracer, Window};
 use rt_lang::scene::{self, Background, Scene};
 use rt_lang::why::Provenance;
 use rt_lang::{FEW_BOUNCES, Finding};
@@ -58,7 +57,7 @@ struct Traced {
 /// Makes the pictures in turn, also those behind one that fails.
 pub fn run(arguments: &Build, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
     let jobs = plan(arguments)?;
-    let threads = ThreadPoolBuilder::new().num_threads(arguments.threads.unwrap_or(0)).build();
+    let threads = ThreadPoolBuilder::new().num_threads(arguments.taking.threads.unwrap_or(0)).build();
     let threads = threads.map_err(|error| Problem::new(format!("cannot start the threads: {error}")))?;
     let context = Context { arguments, threads, terminal, interrupt };
     let mut messenger = Messenger::new(&arguments.messages, terminal, arguments.quiet);
@@ -105,7 +104,7 @@ fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
         return Err(problem.help("give one of the scenes another name, or build them one by one with `-o`"));
     }
     refuse_inputs_as_outputs(scenes, &all)?;
-    refuse_idle_depth(arguments.look.bits, &all)?;
+    refuse_idle_depth(arguments.taking.look.bits, &all)?;
     for job in &jobs {
         refuse_idle_aovs(&arguments.aov, &job.targets)?;
     }
@@ -181,7 +180,7 @@ fn same(path: &Path) -> PathBuf {
 fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit, Problem> {
     let Context { arguments, terminal, .. } = *context;
     let start = Instant::now();
-    let loaded = scenes::load(&job.scene, &arguments.reading, &overrides(arguments))?;
+    let loaded = scenes::load(&job.scene, &arguments.reading, &arguments.taking.overrides())?;
     let compiled = &loaded.compiled;
     let mut exit = messenger.say(&compiled.diagnostics, &loaded.sources)?;
     let Some(scene) = compiled.scene.as_ref().filter(|_| exit == Exit::Done) else {
@@ -192,7 +191,7 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
     let Some(from) = compiled.provenance(&loaded.sources) else { return Ok(Exit::Diagnostics) };
     let Ok(traced) = trace(context, job, from, window) else { context.interrupt.wait() };
     let facts = facts(scene, &traced);
-    let depth = arguments.look.bits;
+    let depth = arguments.taking.look.bits;
     context.threads.install(|| write(&traced.picture, &facts, &traced.channels, depth, staged))?;
     let findings = findings(scene, &traced);
     let mut warnings: Vec<Diagnostic> =
@@ -265,22 +264,6 @@ fn summary(job: &Job, scene: &Scene, traced: &Traced, time: Duration) -> String 
     format!("{names}: {width}×{height}, {samples} {unit}{noise} in {}, {exposure}", duration(time))
 }
 
-/// What the command line says in place of the file.
-fn overrides(arguments: &Build) -> Overrides {
-    Overrides {
-        camera: arguments.camera.clone(),
-        every_camera: false,
-        size: arguments.size,
-        samples: arguments.samples,
-        seed: arguments.seed,
-        exposure: arguments.exposure.map(|exposure| match exposure {
-            Exposure::Auto => None,
-            Exposure::Stops(stops) => Some(stops),
-        }),
-        tonemap: arguments.look.tonemap,
-    }
-}
-
 /// The pixels to trace.
 fn window(scene: &Scene, crop: Option<[u32; 4]>) -> Result<Window, Problem> {
     let whole = Window::whole(scene.trace.size);
@@ -322,9 +305,7 @@ fn trace(context: &Context, job: &Job, from: Provenance, window: Window) -> Resu
     context.threads.install(|| {
         let tracer = Tracer::new(scene);
         let prepass = tracer.prepass();
-        // Two digits, so that the number that is printed gives the very picture when it is written down; and
-        // no negative zero.
-        let chosen = (prepass.exposure_stops * 100.0).round() / 100.0 + 0.0;
+        let chosen = chosen_stops(&prepass);
         let stops = scene.develop.exposure.unwrap_or(chosen);
         let shown = Shown { stops, tonemap: scene.develop.tonemap };
         let rendered = tracer.render(window, scene.trace.target, &prepass, shown, &control)?;
@@ -346,6 +327,12 @@ fn trace(context: &Context, job: &Job, from: Provenance, window: Window) -> Resu
         let (fitting, cut) = (chosen, prepass.cut);
         Ok(Traced { picture, samples, noise, target_met, stops, fitting, cut, channels, feedback })
     })
+}
+
+/// The exposure where the scene gives none. Two digits, so that the number that is printed gives the very picture when
+/// it is written down; and no negative zero.
+pub fn chosen_stops(prepass: &Prepass) -> f64 {
+    (prepass.exposure_stops * 100.0).round() / 100.0 + 0.0
 }
 
 /// Writes every form of a picture, and only then moves them to their places.

@@ -87,6 +87,11 @@ impl Disk {
         all.iter().map(asked).collect()
     }
 
+    /// Every file that was asked for, with what it holds if it can be used.
+    pub fn held(&self) -> Vec<(PathBuf, Option<Arc<[u8]>>)> {
+        self.lock().iter().map(|(path, answer)| (self.named(path), answer.clone().ok())).collect()
+    }
+
     /// A file's path as the user would write it.
     fn named(&self, path: &FilePath) -> PathBuf {
         if self.shown.as_os_str() == "." { path.as_str().into() } else { self.shown.join(path.as_str()) }
@@ -130,6 +135,11 @@ impl Files for Disk {
     fn name(&self, path: &FilePath) -> String {
         self.named(path).display().to_string()
     }
+}
+
+/// Whether two names that a user may write are of the same file.
+pub fn same_name(a: &str, b: &str) -> bool {
+    a == b || std::path::absolute(a).ok().is_some_and(|a| std::path::absolute(b).is_ok_and(|b| a == b))
 }
 
 fn plain_file(metadata: &fs::Metadata) -> Result<(), FileError> {

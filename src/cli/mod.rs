@@ -26,6 +26,7 @@ mod init;
 mod fmt;
 mod input;
 mod interrupt;
+mod live;
 mod manual;
 mod messages;
 mod progress;
@@ -93,6 +94,7 @@ pub fn main() -> ExitCode {
     let interrupt = Interrupt::install(terminal);
     let ended = match arguments.command {
         Command::Build(build) => build::run(&build, terminal, &interrupt),
+        Command::Watch(watch) => live::run(&watch, terminal, &interrupt),
         Command::Check(check) => check::run(&check, terminal, &interrupt),
         Command::Develop(develop) => develop::run(&develop, terminal, &interrupt),
         Command::Explain(explain) => explain::run(&explain),

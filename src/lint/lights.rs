@@ -64,7 +64,7 @@ fn sealed(lint: &mut Lint) {
     let mut pairs = 0;
     let mut known = BTreeSet::new();
     let mut found = vec![];
-    for solid in &lint.scene.primitives {
+    for solid in lint.scene.primitives.iter() {
         if lamps.is_empty() || pairs >= MOST_PAIRS {
             break;
         }

@@ -18,7 +18,7 @@ pub(super) fn look(lint: &mut Lint) {
     let mut largest: Option<(f64, OriginId)> = None;
     let mut smallest: Option<(f64, OriginId)> = None;
     let mut farthest: Option<(f64, OriginId)> = None;
-    for Primitive { shape, origin, .. } in &lint.scene.primitives {
+    for Primitive { shape, origin, .. } in lint.scene.primitives.iter() {
         let Some(bounds) = shape.bounds() else { continue };
         let size = bounds.size().max_element();
         let ratio = bounds.min.abs().max(bounds.max.abs()).max_element() / size;

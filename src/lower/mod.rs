@@ -18,7 +18,8 @@ use crate::files::{Contents, Files};
 use crate::math::{DAffine3, PI, sin};
 use crate::scene::shape::{Bounds, Placed};
 use crate::scene::{
-    Develop, FrameId, Light, Material, MaterialId, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace,
+    Camera, Develop, FrameId, Light, Material, MaterialId, OriginId, Primitive, Scene, Shape, Target,
+    Tonemap, Trace,
 };
 use crate::schema::{self, Category, DEFAULT_SAMPLES, KindId, light, render, sun};
 use crate::source::Sources;
@@ -26,6 +27,7 @@ use crate::span::{SourceId, Span};
 pub use marks::MaterialMarks;
 use material::Materials;
 pub use mesh::Meshes;
+use std::sync::Arc;
 use texture::Textures;
 
 /// The most pixels a picture may have.
@@ -63,6 +65,8 @@ pub struct Lowered {
     pub places: Places,
     /// Where the rest of the scene stands.
     pub marks: Marks,
+    /// The cameras that do not take the picture, each with its places, where they are looked at.
+    pub others: Vec<(Camera, Marks)>,
     /// Where its pictures and meshes were read.
     pub contents: Contents,
 }
@@ -130,7 +134,7 @@ pub fn lower(
         meshes.name(&mut lowering.out.contents);
         let (textures, images) = lowering.textures.finish();
         lowering.out.scene = Some(Scene {
-            primitives: lowering.primitives,
+            primitives: Arc::new(lowering.primitives),
             materials: lowering.materials.finish(),
             textures,
             images,

@@ -1,13 +1,17 @@
-//! The handle by which whoever started a render watches and stops it.
+//! The handle by which whoever started a render watches, pauses and stops it.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-/// Shared between the threads that render and the one that waits: cancels, and tells how far it got.
+/// Shared between the threads that render and the one that waits: pauses, cancels, and tells how far it got.
 #[derive(Debug, Default)]
 pub struct Control {
     cancelled: AtomicBool,
     done: AtomicU64,
     total: AtomicU64,
+    paused: AtomicBool,
+    /// Woken when paths may go on.
+    going_on: (Mutex<()>, Condvar),
 }
 
 /// What a render yields that was told to stop.
@@ -31,7 +35,31 @@ impl Control {
 
     /// Asks the render to stop; it does after the paths that are under way.
     pub fn cancel(&self) {
+        let _held = self.hold();
         self.cancelled.store(true, Relaxed);
+        self.going_on.1.notify_all();
+    }
+
+    /// Lets paths wait, or go on.
+    pub fn pause(&self, paused: bool) {
+        let _held = self.hold();
+        self.paused.store(paused, Relaxed);
+        self.going_on.1.notify_all();
+    }
+
+    /// Waits while the render is paused.
+    pub(super) fn rest(&self) {
+        if !self.paused.load(Relaxed) {
+            return;
+        }
+        let mut held = self.hold();
+        while self.paused.load(Relaxed) && !self.is_cancelled() {
+            held = self.going_on.1.wait(held).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    fn hold(&self) -> MutexGuard<'_, ()> {
+        self.going_on.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Whether it was asked to stop.

@@ -36,7 +36,7 @@ impl Materials {
             natures.push([f32::from_bits(kind as u32 | painted), f32::from_bits(coat), 0.0, 0.0]);
         }
         let mut rows = vec![0; scene.primitives.len()];
-        for (id, primitive) in (0..).map(PrimitiveId).zip(&scene.primitives) {
+        for (id, primitive) in (0..).map(PrimitiveId).zip(scene.primitives.iter()) {
             rows[surfaces.slot(id) as usize] = primitive.material.0;
         }
         if rows.len() <= MOST {

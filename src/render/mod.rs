@@ -22,6 +22,7 @@
 //! | [`feedback`] | what many paths did, all over a picture |
 //! | [`film`] | exact sums |
 //! | `prepass` | exposure and the film's scale |
+//! | [`shares`] | how much of the light is of which lamp |
 //! | [`control`] | cancelling and progress |
 //! | `stray` | rays without pictures, to measure |
 //!
@@ -53,6 +54,7 @@ mod prepass;
 mod queue;
 pub mod sampler;
 pub mod shape;
+pub mod shares;
 mod space;
 mod surfaces;
 #[cfg(test)]
@@ -96,7 +98,7 @@ pub struct Tracer<'s> {
     space: Space,
     /// Radiance in a unit of the tracer's, a power of two.
     unit: f64,
-    surfaces: Surfaces<'s>,
+    surfaces: Surfaces,
     materials: Materials,
     lights: Lights,
     dielectrics: Dielectrics<'s>,
@@ -106,6 +108,13 @@ pub struct Tracer<'s> {
     caustics: Caustics,
     sharing: Sharing,
     level: Level,
+    keeps_structure: bool,
+}
+
+/// What rays are tested against, kept for another scene: see [`Tracer::with`].
+pub struct Structure {
+    surfaces: Surfaces,
+    materials: Vec<Material>,
 }
 
 /// A finished film.
@@ -166,15 +175,22 @@ pub const MOST_NOISE_SAMPLES: u32 = 1 << 16;
 /// Pixels along the side of a tile.
 const TILE: u32 = 16;
 /// Samples of a pixel in one pass over the picture.
-const PASS: u32 = 64;
+pub const PASS: u32 = 64;
 
 impl<'s> Tracer<'s> {
     /// Builds what tracing needs: hierarchy, tables of lights and coats.
     pub fn new(scene: &'s Scene) -> Tracer<'s> {
+        Tracer::with(scene, None)
+    }
+
+    /// The same with the structure of an earlier scene, if that fits: see [`Tracer::keeps_structure`].
+    pub fn with(scene: &'s Scene, structure: Option<Structure>) -> Tracer<'s> {
         let size = size(scene);
         let space = Space::new(scene.camera.position, size);
         let unit = radiance_unit(peak(scene));
-        let surfaces = Surfaces::new(scene, &space);
+        let kept = structure.and_then(|kept| kept.surfaces.kept(&kept.materials, scene, &space));
+        let keeps_structure = kept.is_some();
+        let surfaces = kept.unwrap_or_else(|| Surfaces::new(scene, &space));
         let mut tracer = Tracer {
             scene,
             materials: Materials::new(scene, &surfaces, unit),
@@ -188,9 +204,20 @@ impl<'s> Tracer<'s> {
             caustics: Caustics::default(),
             sharing: Sharing::Both,
             level: Level::best(),
+            keeps_structure,
         };
         tracer.caustics = Caustics::new(&tracer);
         tracer
+    }
+
+    /// Whether surfaces are where they were in the scene before, so that its structure could be kept.
+    pub fn keeps_structure(&self) -> bool {
+        self.keeps_structure
+    }
+
+    /// What rays are tested against, for another scene that may have its surfaces in the same places.
+    pub fn into_structure(self) -> Structure {
+        Structure { surfaces: self.surfaces, materials: self.scene.materials.clone() }
     }
 
     /// Leaves caustics to luck: the same picture on average, but for light of points, which luck never finds.
@@ -261,9 +288,25 @@ impl<'s> Tracer<'s> {
         samples: std::ops::Range<u32>,
         control: &Control,
     ) -> Result<(), Cancelled> {
-        let tiles: Vec<Window> = film.window().tiles(TILE).collect();
+        self.add_samples_in(&[film.window()], film, samples, control)
+    }
+
+    /// The same for some windows of the film, which do not overlap. Up to [`PASS`] samples come all or not at all.
+    ///
+    /// # Errors
+    ///
+    /// If the control cancels; the film then holds some of them.
+    pub fn add_samples_in(
+        &self,
+        windows: &[Window],
+        film: &mut Film,
+        samples: std::ops::Range<u32>,
+        control: &Control,
+    ) -> Result<(), Cancelled> {
+        let tiles: Vec<Window> = windows.iter().flat_map(|window| window.tiles(TILE)).collect();
         let scale = film.scale();
-        control.plan(film.window().pixels() as u64 * u64::from(samples.end - samples.start));
+        let pixels: u64 = windows.iter().map(|window| window.pixels() as u64).sum();
+        control.plan(pixels * u64::from(samples.end - samples.start));
         let view = View::new(&self.eye, self.scene.trace.seed);
         for start in samples.clone().step_by(PASS as usize) {
             let pass = start..samples.end.min(start + PASS);
@@ -283,6 +326,29 @@ impl<'s> Tracer<'s> {
             }
         }
         Ok(())
+    }
+
+    /// The first sample of every pixel whose column and row are multiples of `step` from half a step on, row by row: a
+    /// first look at a picture. Nothing where it meets nothing in front of a transparent background.
+    ///
+    /// # Errors
+    ///
+    /// If the control cancels.
+    pub fn look(&self, step: u32, control: &Control) -> Result<Vec<Option<Rgb>>, Cancelled> {
+        let [width, height] = self.scene.trace.size;
+        let columns = width.div_ceil(step);
+        let view = View::new(&self.eye, self.scene.trace.seed);
+        let rows: Vec<Vec<Option<Rgb>>> = (0..height.div_ceil(step))
+            .into_par_iter()
+            .map(|row| {
+                let radiance = vec![None; columns as usize];
+                let y = (row * step + step / 2).min(height - 1);
+                let mut row = Glimpse { y, step, width, next: 0, radiance, unit: self.unit, control };
+                self.trace(&view, &mut row);
+                row.radiance
+            })
+            .collect();
+        if control.is_cancelled() { Err(Cancelled) } else { Ok(rows.concat()) }
     }
 
     /// What one sample adds to its pixel, watched. Traced in one lane, to the same bits as in many.
@@ -392,6 +458,7 @@ impl Jobs for Tile<'_> {
         self.next.1 += 1;
         if self.next.1 >= self.samples.end {
             self.next = (pixel + 1, self.samples.start);
+            self.control.rest();
             self.control.finish(u64::from(self.samples.end - self.samples.start));
             if self.control.is_cancelled() {
                 self.next.0 = u32::MAX;
@@ -406,6 +473,34 @@ impl Jobs for Tile<'_> {
         let weight = f64::from(arrived.weight);
         pixel.add(weight * self.unit * wide(arrived.radiance), self.scale);
         pixel.cover(arrived.open, weight);
+    }
+}
+
+/// A row of a first look.
+struct Glimpse<'a> {
+    y: u32,
+    step: u32,
+    width: u32,
+    next: u32,
+    radiance: Vec<Option<Rgb>>,
+    unit: f64,
+    control: &'a Control,
+}
+
+impl Jobs for Glimpse<'_> {
+    fn next(&mut self) -> Option<Job> {
+        let pixel = self.next;
+        if pixel as usize >= self.radiance.len() || self.control.is_cancelled() {
+            return None;
+        }
+        self.next += 1;
+        let x = (pixel * self.step + self.step / 2).min(self.width - 1);
+        Some(Job { x, y: self.y, sample: 0, pixel })
+    }
+
+    fn finish(&mut self, arrived: &Arrived) {
+        let radiance = f64::from(arrived.weight) * self.unit * wide(arrived.radiance);
+        self.radiance[arrived.pixel as usize] = (!arrived.open).then_some(radiance);
     }
 }
 

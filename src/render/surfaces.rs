@@ -19,13 +19,13 @@ use crate::math::DVec3;
 use crate::scene::PrimitiveId;
 
 /// The surfaces, kind by kind.
-pub struct Surfaces<'s> {
+pub struct Surfaces {
     flats: Vec<Flat>,
     giants: Vec<Giant>,
     /// None where there is a hierarchy, which holds them.
     balls: Vec<Ball>,
     quadrics: Vec<Quadric>,
-    exact: Exact<'s>,
+    exact: Exact,
     space: Space,
     /// The quadrics that are tested one by one, by their place among them.
     direct_quadrics: Vec<u32>,
@@ -50,7 +50,7 @@ pub struct Surfaces<'s> {
 /// About what a surface takes in the tables.
 pub(super) const BYTES_A_SURFACE: usize = size_of::<Ball>() + size_of::<[f32; 4]>() + 13;
 
-impl<'s> Surfaces<'s> {
+impl Surfaces {
     /// The primitive in a slot.
     #[inline]
     pub fn primitive(&self, slot: u32) -> PrimitiveId {
@@ -224,7 +224,7 @@ impl<'s> Surfaces<'s> {
 
     /// What is met in double precision.
     #[inline]
-    pub fn exact(&self) -> &Exact<'s> {
+    pub fn exact(&self) -> &Exact {
         &self.exact
     }
 

@@ -28,8 +28,8 @@ pub use texture::{FrameId, ImageId, Paint, Texture, TextureId};
 /// A whole picture, ready to be traced.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Scene {
-    /// Every surface, glowing spheres of lights among them.
-    pub primitives: Vec<Primitive>,
+    /// Every surface, glowing spheres of lights among them. Shared with what rays are tested against.
+    pub primitives: Arc<Vec<Primitive>>,
     /// Materials, each used by at least one primitive.
     pub materials: Vec<Material>,
     /// What materials are painted with. An entry refers only to earlier ones.

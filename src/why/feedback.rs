@@ -123,7 +123,7 @@ impl Provenance<'_> {
 
     /// All that may give light.
     fn all_sources(&self) -> impl Iterator<Item = Source> {
-        let glowing = (0..).map(PrimitiveId).zip(&self.scene.primitives).filter(|(_, primitive)| {
+        let glowing = (0..).map(PrimitiveId).zip(self.scene.primitives.iter()).filter(|(_, primitive)| {
             matches!(self.scene.material(primitive), Material::Emitter { radiance, .. } if radiance.max_element() > 0.0)
         });
         let lights = (0..self.scene.lights.len() as u32).map(Source::Light);

@@ -4,6 +4,7 @@ mod bad_input;
 mod layout;
 mod pictures;
 mod tools;
+mod watch;
 mod why;
 
 use std::fs;

@@ -136,16 +136,16 @@ impl Lights {
     pub fn new(scene: &Scene) -> Lights {
         let lights =
             (0..).zip(&scene.lights).map(|(i, light)| Lamp::from_light(scene, Source::Light(i), light));
-        let glowing = (0..).map(PrimitiveId).zip(&scene.primitives).filter_map(|(id, primitive)| match scene
-            .material(primitive)
-        {
-            Material::Emitter { radiance, pattern } => {
-                let pattern = pattern.map_or(Paint::Plain(Rgb::ONE), Paint::Texture);
-                let mean = *radiance * scene.mean(pattern);
-                let peak = *radiance * scene.peak(pattern);
-                Lamp::from_surface(id, &primitive.shape, *radiance, mean, peak)
+        let glowing = (0..).map(PrimitiveId).zip(scene.primitives.iter()).filter_map(|(id, primitive)| {
+            match scene.material(primitive) {
+                Material::Emitter { radiance, pattern } => {
+                    let pattern = pattern.map_or(Paint::Plain(Rgb::ONE), Paint::Texture);
+                    let mean = *radiance * scene.mean(pattern);
+                    let peak = *radiance * scene.peak(pattern);
+                    Lamp::from_surface(id, &primitive.shape, *radiance, mean, peak)
+                }
+                _ => None,
             }
-            _ => None,
         });
         let lamps: Vec<Lamp> = lights.chain(glowing).filter(|lamp| lamp.peak > 0.0).collect();
         let by_source = lamps.iter().zip(0..).map(|(lamp, index)| (lamp.source, index)).collect();

@@ -21,7 +21,7 @@ type Outcome = Result<(), String>;
 /// Does one thing in its place.
 type Step = fn(&Place) -> Outcome;
 
-/// The steps of `e2e`, in order.
+/// The steps of `e2e`, in order. All but [`ARM`] are run where none is named.
 const STEPS: &[(&str, Step)] = &[
     ("terminal", terminal),
     ("full-disk", full_disk),
@@ -31,8 +31,12 @@ const STEPS: &[(&str, Step)] = &[
     ("export", export::agreement),
     ("mattes", mattes),
     ("processors", processors::same_bits),
+    (ARM, processors::same_bits_on_arm),
     ("readme", readme::commands),
 ];
+
+/// It needs a part of Rust that no distribution has.
+const ARM: &str = "arm";
 
 const USAGE: &str = "\
 cargo xtask gallery
@@ -52,10 +56,11 @@ cargo xtask e2e [STEP…]
   reference  the room against a converged picture of another renderer (minutes)
   export     exported scenes against Mitsuba (from PyPI) and POV-Ray (povray, of Debian)
   mattes     Cryptomatte by an independent reader (from PyPI)
-  processors the same bytes on other processors, by emulation (qemu-user, gcc-aarch64-linux-gnu)
+  processors the same bytes on other x86-64 processors, by emulation (qemu-user)
+  arm        the same on an ARM with NEON (gcc-aarch64-linux-gnu, and rustup for its standard library)
   readme     every command of the README, in a fresh clone of HEAD
 
-Without STEP all are run. Needs python3, bash, git and, for full-disk, leave to mount a tmpfs. What else a step needs
+Without STEP all but arm are run. Needs python3, bash, git and, for full-disk, leave to mount a tmpfs. What else a step needs
 it installs, from Debian or PyPI, or says that it cannot.";
 
 /// Where things are.
@@ -93,8 +98,11 @@ fn e2e(wanted: &[String]) -> Outcome {
     run(Command::new("cargo").args(["build", "--quiet", "--bin", "rtc"]).current_dir(&root))?;
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
     let mut failed = vec![];
-    for (name, step) in STEPS.iter().filter(|(name, _)| wanted.is_empty() || wanted.iter().any(|w| w == name))
-    {
+    let is_wanted = |name: &str| match wanted {
+        [] => name != ARM,
+        wanted => wanted.iter().any(|w| w == name),
+    };
+    for (name, step) in STEPS.iter().filter(|(name, _)| is_wanted(name)) {
         println!("e2e {name}");
         let desk = target.join("e2e").join(name);
         let place = Place { root: root.clone(), rtc: root.join(&target).join("debug/rtc"), desk };

@@ -7,6 +7,7 @@ use rt_lang::diagnostic::{Code, Severity};
 use rt_lang::lower::MAX_PIXELS;
 use rt_lang::output::Depth;
 use rt_lang::schema::{Key, KindId, Tonemap, Word, camera, render};
+use std::net::{Ipv4Addr, SocketAddr};
 use std::str::FromStr;
 
 /// More threads than any machine has use for.
@@ -27,6 +28,19 @@ pub fn size(text: &str) -> Result<[u32; 2], String> {
         ));
     }
     Ok([width as u32, height as u32])
+}
+
+/// Where a page is served: on this machine alone, for whoever reaches the page can change the scene.
+pub fn address(text: &str) -> Result<SocketAddr, String> {
+    let wanted = "an address of this machine, such as 127.0.0.1:8080, or only a port";
+    let address = match text.parse::<u16>() {
+        Ok(port) => SocketAddr::from((Ipv4Addr::LOCALHOST, port)),
+        Err(_) => text.replacen("localhost:", "127.0.0.1:", 1).parse::<SocketAddr>().map_err(|_| wanted)?,
+    };
+    match address.ip().is_loopback() {
+        true => Ok(address),
+        false => Err(format!("{} can be reached by others: this wants {wanted}", address.ip())),
+    }
 }
 
 pub fn samples(text: &str) -> Result<u32, String> {

@@ -11,11 +11,12 @@ use super::lanes::{Lanes, One, Word};
 use super::shape::{Face, Hits, ROUNDING, Rays, decode, encode, slot};
 use super::space::{Space, double};
 use crate::math::DVec3;
-use crate::scene::{PrimitiveId, Scene, Shape};
+use crate::scene::{Primitive, PrimitiveId, Scene, Shape};
 pub(super) use bvh::BYTES_A_THING;
 use mesh::Tree;
 pub(super) use mesh::uv as mesh_uv;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A half-line, and the face of the surface in question that it starts on, if it does.
 #[derive(Clone, Copy, Debug)]
@@ -45,8 +46,8 @@ impl SurfacePoint {
 }
 
 /// The surfaces of a scene that are met in double precision.
-pub struct Exact<'s> {
-    scene: &'s Scene,
+pub struct Exact {
+    primitives: Arc<Vec<Primitive>>,
     space: Space,
     /// Of each mesh, once however often it stands in the scene.
     trees: Vec<Tree>,
@@ -54,11 +55,21 @@ pub struct Exact<'s> {
     tree_of: Vec<u32>,
 }
 
-impl<'s> Exact<'s> {
+impl Exact {
     /// Those of a scene.
-    pub fn new(scene: &'s Scene, space: &Space) -> Exact<'s> {
+    pub fn new(scene: &Scene, space: &Space) -> Exact {
         let (trees, tree_of) = trees(scene);
-        Exact { scene, space: *space, trees, tree_of }
+        Exact { primitives: scene.primitives.clone(), space: *space, trees, tree_of }
+    }
+
+    /// The surfaces they are taken from.
+    pub fn primitives(&self) -> &[Primitive] {
+        &self.primitives
+    }
+
+    /// Takes them from another scene, in which they have the same shapes, so that the first need not be kept.
+    pub fn refer_to(&mut self, scene: &Scene) {
+        self.primitives = scene.primitives.clone();
     }
 
     /// The least distance above 0 at which a ray meets a surface in a slot, with place and detail. Infinite if it does
@@ -101,8 +112,8 @@ impl<'s> Exact<'s> {
         }
     }
 
-    fn shape(&self, id: PrimitiveId) -> &'s Shape {
-        &self.scene.primitives[id.0 as usize].shape
+    fn shape(&self, id: PrimitiveId) -> &Shape {
+        &self.primitives[id.0 as usize].shape
     }
 
     fn tree(&self, id: PrimitiveId) -> &Tree {

@@ -164,21 +164,21 @@ impl Lights {
         let lights = (0..)
             .zip(&scene.lights)
             .filter_map(|(i, light)| Lamp::from_light(scene, Source::Light(i), light, space, unit));
-        let glowing = (0..).map(PrimitiveId).zip(&scene.primitives).filter_map(|(id, primitive)| match scene
-            .material(primitive)
-        {
-            Material::Emitter { radiance, pattern } => {
-                let paint = pattern.map_or(Paint::Plain(Rgb::ONE), Paint::Texture);
-                if (*radiance * scene.peak(paint)).max_element() <= 0.0 {
-                    return None;
+        let glowing = (0..).map(PrimitiveId).zip(scene.primitives.iter()).filter_map(|(id, primitive)| {
+            match scene.material(primitive) {
+                Material::Emitter { radiance, pattern } => {
+                    let paint = pattern.map_or(Paint::Plain(Rgb::ONE), Paint::Texture);
+                    if (*radiance * scene.peak(paint)).max_element() <= 0.0 {
+                        return None;
+                    }
+                    let mut lamp =
+                        Lamp::from_surface(id, surfaces.slot(id), &primitive.shape, *radiance / unit, space)?;
+                    lamp.strength = luminance(*radiance * scene.mean(paint) / unit) as f32;
+                    lamp.patterned = pattern.is_some();
+                    Some(lamp)
                 }
-                let mut lamp =
-                    Lamp::from_surface(id, surfaces.slot(id), &primitive.shape, *radiance / unit, space)?;
-                lamp.strength = luminance(*radiance * scene.mean(paint) / unit) as f32;
-                lamp.patterned = pattern.is_some();
-                Some(lamp)
+                _ => None,
             }
-            _ => None,
         });
         let lamps: Vec<Lamp> = lights.chain(glowing).collect();
         let mut by_slot: Vec<(u32, u32)> = (0..)

@@ -21,6 +21,7 @@ pub mod quadric;
 use super::lanes::{Float, Lanes, Mask, One, Word};
 use super::vector::V;
 use crate::math::DVec3;
+use crate::scene::Material;
 
 /// A half-line a lane, and the surface it starts on.
 #[derive(Clone, Copy)]
@@ -129,12 +130,22 @@ pub const fn decode(place: u32, detail: u32) -> Face {
 }
 
 /// What a surface is made of, as far as rays care.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Nature {
     /// A ray to what glows must not be stopped by it.
     pub glows: bool,
     /// No light comes from below.
     pub opaque: bool,
+}
+
+impl Nature {
+    /// That of what is made of a material.
+    pub fn of(material: &Material) -> Nature {
+        Nature {
+            glows: matches!(material, Material::Emitter { .. }),
+            opaque: !matches!(material, Material::Dielectric { .. }),
+        }
+    }
 }
 
 impl<L: Lanes> Rays<L> {

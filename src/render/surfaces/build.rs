@@ -4,7 +4,7 @@ use super::{Ball, Exact, Flat, Giant, Quadric, Surfaces, Table, Tree};
 use crate::render::accel::Item;
 use crate::render::shape::Nature;
 use crate::render::space::Space;
-use crate::scene::{Material, PrimitiveId, Scene, Shape};
+use crate::scene::{Material, Primitive, PrimitiveId, Scene, Shape};
 
 /// Surfaces with an end that take up to so long are tested one by one, which is then faster than a hierarchy: in the time
 /// of a ball.
@@ -31,9 +31,9 @@ impl Kind {
     }
 }
 
-impl<'s> Surfaces<'s> {
+impl Surfaces {
     /// Those of a scene.
-    pub fn new(scene: &'s Scene, space: &Space) -> Surfaces<'s> {
+    pub fn new(scene: &Scene, space: &Space) -> Surfaces {
         let kind = |shape: &Shape| match shape {
             Shape::Plane { .. } => Kind::Flat,
             Shape::Sphere { center, radius } => {
@@ -47,7 +47,7 @@ impl<'s> Surfaces<'s> {
             Shape::Disk(_) | Shape::Box(_) | Shape::Mesh(_) => Kind::Exact,
         };
         let mut order: Vec<(Kind, PrimitiveId)> =
-            (0..).zip(&scene.primitives).map(|(id, p)| (kind(&p.shape), PrimitiveId(id))).collect();
+            (0..).zip(scene.primitives.iter()).map(|(id, p)| (kind(&p.shape), PrimitiveId(id))).collect();
         order.sort_unstable();
         let count = |last: Kind| order.partition_point(|(kind, _)| *kind <= last) as u32;
         let starts = [
@@ -79,11 +79,7 @@ impl<'s> Surfaces<'s> {
             surfaces.slots[id.0 as usize] = slot;
             let primitive = &scene.primitives[id.0 as usize];
             surfaces.closed.push(primitive.shape.is_closed());
-            let material = scene.material(primitive);
-            let nature = Nature {
-                glows: matches!(material, Material::Emitter { .. }),
-                opaque: !matches!(material, Material::Dielectric { .. }),
-            };
+            let nature = Nature::of(scene.material(primitive));
             let (anchor, lean) = surfaces.push(kind, &primitive.shape, nature, space);
             anchors.push(anchor);
             leans.extend(lean);
@@ -92,6 +88,23 @@ impl<'s> Surfaces<'s> {
         (surfaces.anchors, surfaces.leans) = (Table::new(anchors), Table::new(leans));
         surfaces.plant(scene, space);
         surfaces
+    }
+
+    /// Those of a scene whose surfaces are where they were in the scene that these were made of, with the same natures, as
+    /// seen from the same place. `materials` are those of that scene. None where that is not so.
+    pub fn kept(mut self, materials: &[Material], scene: &Scene, space: &Space) -> Option<Surfaces> {
+        let before = self.exact.primitives();
+        let same = |(before, after): (&Primitive, &Primitive)| {
+            let nature = Nature::of(&materials[before.material.0 as usize]);
+            before.shape == after.shape && nature == Nature::of(scene.material(after))
+        };
+        let fits = self.space == *space
+            && before.len() == scene.primitives.len()
+            && before.iter().zip(scene.primitives.iter()).all(same);
+        fits.then(|| {
+            self.exact.refer_to(scene);
+            self
+        })
     }
 
     /// Builds the hierarchy if there is much to test.

@@ -34,7 +34,7 @@ pub struct Hit {
 
 /// The surfaces of a scene.
 pub struct Accel {
-    surfaces: Surfaces<'static>,
+    surfaces: Surfaces,
     space: Space,
 }
 

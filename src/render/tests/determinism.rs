@@ -1,6 +1,7 @@
 //! The same bits whatever runs it, and control over it.
 
 use super::*;
+use std::sync::Arc;
 
 fn small_room() -> Scene {
     let mut scene = reference::room();
@@ -58,7 +59,7 @@ fn scenes_of_all_kinds() -> Vec<Scene> {
     crowd.camera.focus = 9.0;
     crowd.trace.filter = Filter::Gaussian;
     crowd.trace.size = [24, 24];
-    let few = Scene { primitives: crowd.primitives[..30].to_vec(), ..crowd.clone() };
+    let few = Scene { primitives: Arc::new(crowd.primitives[..30].to_vec()), ..crowd.clone() };
     let mut hall = lights::many_lamps();
     hall.trace.size = [24, 24];
     vec![small_room(), few, crowd, hall]

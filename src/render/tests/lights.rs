@@ -5,6 +5,7 @@ use crate::math::{acos, cos, sin};
 use crate::render::observer::{Contribution, Place};
 use crate::render::path::Sharing;
 use adapter::Lamps;
+use std::sync::Arc;
 
 /// A white floor seen from straight above, off to the side of the light.
 fn floor_below() -> Scene {
@@ -186,7 +187,7 @@ pub fn many_lamps() -> Scene {
 #[test]
 fn lamps_are_chosen_as_often_as_is_told() {
     const DRAWS: u32 = 20_000;
-    let few = Scene { primitives: Vec::new(), ..many_lamps() };
+    let few = Scene { primitives: Arc::default(), ..many_lamps() };
     let few = Scene { lights: few.lights[..10].to_vec(), ..few };
     for scene in [many_lamps(), few] {
         let lamps = Lamps::of(&scene);
@@ -249,7 +250,7 @@ fn directions_to_lights_have_their_density() {
             continue;
         }
         if scene.primitives.len() > 1 {
-            scene.primitives.remove(0);
+            Arc::make_mut(&mut scene.primitives).remove(0);
         }
         scene.camera.position = DVec3::ZERO;
         let lamps = Lamps::of(&scene);

@@ -13,6 +13,7 @@ mod meshes;
 mod numbers;
 mod reference;
 mod shapes;
+mod shares;
 mod skies;
 mod solids;
 mod textures;
@@ -25,13 +26,14 @@ use crate::scene::{
     Background, Camera, Develop, Filter, Light, MaterialId, OriginId, Primitive, PrimitiveId, Projection,
     Shape, Trace,
 };
+use std::sync::Arc;
 
 /// A scene without anything, whose camera at `from` looks towards `look` through a narrow pinhole.
 fn scene(from: DVec3, look: DVec3) -> Scene {
     let forward = (look - from).normalize();
     let (right, up) = crate::math::basis(-forward);
     Scene {
-        primitives: Vec::new(),
+        primitives: Arc::default(),
         materials: Vec::new(),
         textures: Vec::new(),
         images: Vec::new(),
@@ -62,7 +64,7 @@ fn scene(from: DVec3, look: DVec3) -> Scene {
 
 impl Scene {
     fn with(mut self, shape: Shape, material: Material) -> Scene {
-        self.primitives.push(Primitive {
+        Arc::make_mut(&mut self.primitives).push(Primitive {
             shape,
             material: MaterialId(self.materials.len() as u32),
             frame: None,

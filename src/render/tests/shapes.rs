@@ -5,6 +5,7 @@ use crate::render::exact::SurfacePoint;
 use crate::render::observer::Place;
 use crate::render::shape::Face;
 use adapter::{Accel, Ray, intersect, surface_point};
+use std::sync::Arc;
 
 /// The implicit function of a shape's side along a ray: negative inside.
 fn implicit(shape: &Shape, p: DVec3) -> f64 {
@@ -245,8 +246,9 @@ fn the_hierarchy_finds_what_a_list_finds() {
     }
     scene = scene.with(floor(), glass(1.5));
     let accel = Accel::of(&scene);
-    let bare = Scene { primitives: vec![], ..scene.clone() };
-    let alone = |primitive: &Primitive| Scene { primitives: vec![primitive.clone()], ..bare.clone() };
+    let bare = Scene { primitives: Arc::default(), ..scene.clone() };
+    let alone =
+        |primitive: &Primitive| Scene { primitives: Arc::new(vec![primitive.clone()]), ..bare.clone() };
     let singles: Vec<Accel> = scene.primitives.iter().map(|primitive| Accel::of(&alone(primitive))).collect();
     let mut last: Option<Ray> = None;
     for i in 0..20_000 {

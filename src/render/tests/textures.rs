@@ -21,7 +21,7 @@ fn painted(shape: Shape, texture: Texture, world_from_object: DAffine3) -> Scene
     scene.textures.push(texture);
     let object_from_world = world_from_object.inverse();
     scene.frames.push(Placed { world_from_object, object_from_world });
-    scene.primitives[0].frame = Some(FrameId(0));
+    Arc::make_mut(&mut scene.primitives)[0].frame = Some(FrameId(0));
     scene
 }
 
@@ -148,7 +148,7 @@ fn patterned(shape: Shape) -> Scene {
     scene.textures.push(Texture::Stripes { a: WHITE, b: BLACK, width: 0.3, along: DVec3::X });
     let [world_from_object, object_from_world] = [DAffine3::IDENTITY; 2];
     scene.frames.push(Placed { world_from_object, object_from_world });
-    scene.primitives[1].frame = Some(FrameId(0));
+    Arc::make_mut(&mut scene.primitives)[1].frame = Some(FrameId(0));
     scene
 }
 

@@ -240,7 +240,7 @@ fn the_hierarchy_finds_what_a_list_finds() {
         let direction = if i % 9 == 0 { DVec3::X } else { random.direction() };
         let ray = Ray { origin: random.point(12.0), direction, start: None };
         let listed = (0..)
-            .zip(&scene.primitives)
+            .zip(scene.primitives.iter())
             .filter_map(|(id, primitive)| {
                 intersect(&primitive.shape, &ray, None).map(|(t, _)| (t, PrimitiveId(id)))
             })

@@ -1,0 +1,322 @@
+//! What a new text leads to, and what pages ask for.
+
+use super::desk::{Desk, Job, Question};
+use super::hub::{Hub, Param, Reply, Request, Said, State};
+use super::reader::{Reader, Seen};
+use super::said::{said, unreadable};
+use super::watcher::Watcher;
+use crate::cli::args::Watch;
+use crate::cli::interrupt::Interrupt;
+use crate::cli::scene::Loaded;
+use crate::cli::terminal::Terminal;
+use crate::cli::{Exit, Problem, target};
+use rt_lang::change;
+use rt_lang::diagnostic::any_errors;
+use rt_lang::render::Window;
+use rt_lang::source::Sources;
+use rt_lang::syntax::{self, ast};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::time::Instant;
+
+/// Reads, compiles, and decides.
+pub struct Engine {
+    scene: PathBuf,
+    quiet: bool,
+    reader: Reader,
+    watcher: Watcher,
+    desk: Arc<Desk>,
+    hub: Arc<Hub>,
+    interrupt: Interrupt,
+    terminal: Terminal,
+    /// What pages set.
+    set: BTreeMap<String, String>,
+    /// Which of them are new.
+    fresh: Vec<String>,
+    generation: u64,
+    /// The job that was put on the desk last.
+    job: Option<Arc<Job>>,
+    /// What was said last.
+    said: Said,
+    /// When to look again whether somebody is still writing.
+    again: Option<Instant>,
+}
+
+impl Engine {
+    /// Puts the parts together.
+    pub fn new(
+        arguments: &Watch,
+        reader: Reader,
+        watcher: Watcher,
+        desk: Arc<Desk>,
+        hub: Arc<Hub>,
+        interrupt: Interrupt,
+        terminal: Terminal,
+    ) -> Engine {
+        let scene = arguments.scene.clone();
+        let name = scene.display().to_string();
+        hub.say(|status| status.scene = name);
+        let (set, said) = (BTreeMap::new(), Said::default());
+        let quiet = arguments.quiet;
+        Engine {
+            scene,
+            fresh: vec![],
+            quiet,
+            reader,
+            watcher,
+            desk,
+            hub,
+            interrupt,
+            terminal,
+            set,
+            generation: 0,
+            job: None,
+            said,
+            again: None,
+        }
+    }
+
+    /// Does what is asked until the process ends.
+    pub fn run(mut self, requests: &Receiver<Request>) -> Result<Exit, Problem> {
+        self.watcher.follow([self.scene.clone()]);
+        self.look(true);
+        loop {
+            let mut waiting = match self.again {
+                None => match requests.recv() {
+                    Ok(request) => vec![request],
+                    Err(_) => return Ok(Exit::Done),
+                },
+                Some(again) => match requests.recv_timeout(again.saturating_duration_since(Instant::now())) {
+                    Ok(request) => vec![request],
+                    Err(RecvTimeoutError::Timeout) => vec![Request::Look],
+                    Err(RecvTimeoutError::Disconnected) => return Ok(Exit::Done),
+                },
+            };
+            // Of what has come in the meantime, one look at the files is enough, and the newest value of each param.
+            waiting.extend(requests.try_iter());
+            let (mut look, mut set) = (false, false);
+            for request in waiting {
+                match request {
+                    Request::Look => look = true,
+                    Request::Set { name, value } => set |= self.set(name, value),
+                    other => self.answer(other),
+                }
+            }
+            if look || set {
+                self.look(set);
+            }
+        }
+    }
+
+    fn answer(&mut self, request: Request) {
+        match request {
+            Request::Look | Request::Set { .. } => {}
+            Request::Write { name, reply } => self.write(&name, reply),
+            Request::Crop(window) => self.crop(window),
+            Request::Pause(paused) => {
+                self.desk.pause(paused);
+                self.hub.say(|status| {
+                    status.state = match status.state {
+                        State::Rendering if paused => State::Paused,
+                        State::Paused if !paused => State::Rendering,
+                        state => state,
+                    }
+                });
+            }
+            Request::Why { x, y, reply } => match self.job {
+                Some(_) => self.desk.ask(Question::Why { pixel: [x, y], reply }),
+                None => drop(reply.send(Err("there is no picture yet".into()))),
+            },
+            Request::Light { file, line, column, reply } => match self.job {
+                Some(_) => self.desk.ask(Question::Light { file, place: [line, column], reply }),
+                None => drop(reply.send(None)),
+            },
+        }
+    }
+
+    fn crop(&self, window: Option<[u32; 4]>) {
+        let Some(job) = &self.job else { return };
+        let [width, height] = job.scene().trace.size;
+        // Whoever drags goes over the edge.
+        let inside = window.and_then(|[x, y, w, h]| {
+            let (x, y) = (x.min(width), y.min(height));
+            let (w, h) = (w.min(width - x), h.min(height - y));
+            (w > 0 && h > 0).then_some(Window { x, y, width: w, height: h })
+        });
+        self.desk.put_first(inside);
+        self.hub.say(|status| status.crop = inside.map(|w| [w.x, w.y, w.width, w.height]));
+    }
+
+    /// Takes a setting; whether anything is different then.
+    fn set(&mut self, name: String, value: String) -> bool {
+        // Its name is put before `=`: anything else would set something else.
+        let known = self.hub.status().params.iter().any(|param| param.name == name);
+        self.fresh.push(name.clone());
+        match value.trim() {
+            _ if !known => false,
+            "" => self.set.remove(&name).is_some(),
+            value => self.set.insert(name, value.into()).as_deref() != Some(value),
+        }
+    }
+
+    /// Looks whether there is a new text.
+    fn look(&mut self, anyway: bool) {
+        self.again = None;
+        let Engine { reader, desk, set, .. } = self;
+        match desk.reading(|| reader.look(set, anyway)) {
+            // What lies on the way to a missing file may have come.
+            Seen::Same => self.watcher.follow(self.reader.files()),
+            Seen::Later(wait) => self.again = Some(Instant::now() + wait),
+            Seen::New(loaded) => {
+                self.watcher.follow(self.reader.files());
+                self.take(*loaded);
+            }
+        }
+    }
+
+    /// Takes what was read.
+    fn take(&mut self, loaded: Result<Loaded, Problem>) {
+        self.generation += 1;
+        match loaded {
+            Err(problem) => {
+                let said = unreadable(&problem.message, problem.help.as_deref());
+                self.fail(said, |terminal| terminal.problem(&problem));
+            }
+            Ok(loaded) => {
+                let Loaded { compiled, sources, .. } = &loaded;
+                let said = said(&compiled.diagnostics, sources);
+                self.describe(&loaded);
+                if any_errors(&compiled.diagnostics) || compiled.scene.is_none() {
+                    self.fail(said, |terminal| terminal.diagnostics(&compiled.diagnostics, sources));
+                } else {
+                    self.succeed(said, loaded);
+                }
+            }
+        }
+    }
+
+    fn fail(&mut self, said: Said, say: impl FnOnce(Terminal)) {
+        if said != self.said {
+            say(self.terminal);
+        }
+        self.said = said.clone();
+        let generation = self.generation;
+        self.hub.say(|status| {
+            status.state = State::Error;
+            status.diagnostics = said;
+            status.generation = generation;
+        });
+    }
+
+    fn succeed(&mut self, said: Said, loaded: Loaded) {
+        if said != self.said && said.warnings > 0 && !self.quiet {
+            self.terminal.diagnostics(&loaded.compiled.diagnostics, &loaded.sources);
+        }
+        let had_errors = self.said.errors > 0;
+        self.said = said.clone();
+        let before = self.job.as_ref().map(|job| &job.loaded.sources);
+        let mut names = std::mem::take(&mut self.fresh);
+        names.extend(before.iter().flat_map(|before| changed(before, &loaded.sources)));
+        let job = Arc::new(Job { generation: self.generation, loaded, names: listed(names) });
+        let notes = job.loaded.compiled.notes.clone();
+        let generation = self.generation;
+        self.hub.say(|status| {
+            status.state = State::Rendering;
+            status.diagnostics = said;
+            status.generation = generation;
+            status.notes = notes;
+        });
+        if had_errors && !self.quiet {
+            self.terminal.line("no errors any more");
+        }
+        self.job = Some(job.clone());
+        self.desk.put(job);
+    }
+
+    /// Says what can be set, and of which files the scene is made.
+    fn describe(&self, loaded: &Loaded) {
+        let set = |name: &str| self.set.get(name);
+        let params: Vec<Param> = loaded
+            .compiled
+            .inventory
+            .params
+            .iter()
+            .map(|param| Param {
+                name: param.name.clone(),
+                ty: param.ty.clone(),
+                doc: param.doc.clone(),
+                default: param.default.clone(),
+                value: set(&param.name).unwrap_or(&param.default).clone(),
+                set: set(&param.name).is_some(),
+                low: param.range.as_ref().map(|[low, _]| low.clone()),
+                high: param.range.as_ref().map(|[_, high]| high.clone()),
+            })
+            .collect();
+        let files = self.reader.files().map(|path| shown(&path)).collect::<std::collections::BTreeSet<_>>();
+        self.hub.say(|status| {
+            // A text that could not be understood has no params; those that were are still there to be mended with.
+            if !params.is_empty() || !any_errors(&loaded.compiled.diagnostics) {
+                status.params = params;
+            }
+            status.files = files.into_iter().collect();
+        });
+    }
+
+    /// Writes what is set into the scene.
+    fn write(&mut self, name: &str, reply: Reply<Result<(), String>>) {
+        let written = self.write_default(name);
+        if written.is_ok() {
+            self.set.remove(name);
+            self.look(true);
+        }
+        let _ = reply.send(written);
+    }
+
+    fn write_default(&self, name: &str) -> Result<(), String> {
+        let value = self.set.get(name).ok_or_else(|| format!("`{name}` is as the file has it"))?;
+        let text = std::fs::read_to_string(&self.scene).map_err(|error| {
+            format!("cannot read `{}`: {}", self.scene.display(), crate::cli::plain(&error))
+        })?;
+        let read = self.job.as_ref().map(|job| &job.loaded.sources.get(job.loaded.id).text);
+        if self.said.errors > 0 || read != Some(&text) {
+            return Err("the scene has errors or is being written: mend it first".into());
+        }
+        let (file, _) = syntax::parse(rt_lang::span::SourceId(0), &text);
+        let default = file.body.entries.iter().find_map(|entry| match entry {
+            ast::Entry::Statement(statement) => match &statement.kind {
+                ast::StatementKind::Param { name: found, default, .. } if found.text == name => {
+                    Some(default.span.range())
+                }
+                _ => None,
+            },
+            _ => None,
+        });
+        let default = default.ok_or_else(|| format!("the scene has no param `{name}`"))?;
+        let text = format!("{}{value}{}", &text[..default.start], &text[default.end..]);
+        target::replace(&self.scene, text.as_bytes(), &self.interrupt).map_err(|problem| problem.message)
+    }
+}
+
+/// How a file is named where it lies below the current folder.
+fn shown(path: &Path) -> String {
+    let here = std::env::current_dir().ok();
+    let below = here.and_then(|here| path.strip_prefix(here).ok().map(Path::to_path_buf));
+    below.unwrap_or_else(|| path.into()).display().to_string()
+}
+
+/// The names of what is different between two readings of a scene.
+fn changed(before: &Sources, after: &Sources) -> Vec<String> {
+    let old = |name: &str| before.iter().map(|(_, source)| source).find(|source| source.name == name);
+    let texts = after.iter().filter_map(|(_, source)| Some((&old(&source.name)?.text, &source.text)));
+    texts.filter(|(old, new)| old != new).flat_map(|(old, new)| change::names(old, new)).collect()
+}
+
+/// What a person is told of them.
+fn listed(mut names: Vec<String>) -> Option<String> {
+    names.dedup();
+    names.truncate(3);
+    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    (!quoted.is_empty()).then(|| quoted.join(", "))
+}

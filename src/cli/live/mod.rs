@@ -1,0 +1,137 @@
+//! `rtc watch`: the picture follows the text.
+//!
+//! ```text
+//! watcher ──▶ engine: reader ──▶ desk ──▶ painter ──▶ hub ──▶ pages
+//!                ▲                           └──────▶ writer ──▶ files
+//!                └───────────── requests ◀──────────── hub
+//! ```
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`watcher`] | when files may have changed |
+//! | [`reader`] | texts that somebody is writing |
+//! | [`engine`] | what a new text leads to |
+//! | [`desk`] | where work waits |
+//! | [`painter`], [`work`] | tracing the newest scene, step by step |
+//! | [`answers`] | why a pixel looks as it does, and where a place of the text is seen |
+//! | [`writer`] | pictures to files, in the background |
+//! | [`said`] | what the compiler says, as a page shows it |
+//! | [`hub`] | what everybody may know, and ask |
+//! | [`serve`] | the page |
+//! | [`editor`] | how a place in a file is opened |
+
+mod answers;
+mod desk;
+mod editor;
+mod engine;
+pub mod hub;
+mod painter;
+mod reader;
+mod said;
+mod serve;
+mod watcher;
+mod work;
+mod writer;
+
+use super::args::Watch;
+use super::build::{refuse_idle_depth, refuse_inputs_as_outputs, targets};
+use super::input::is_standard;
+use super::interrupt::Interrupt;
+use super::target::{Target, print};
+use super::terminal::Terminal;
+use super::{Exit, Problem, build, plain};
+use desk::Desk;
+use editor::Editor;
+use engine::Engine;
+use hub::{Hub, Request};
+use painter::Painter;
+use rayon::ThreadPoolBuilder;
+use reader::Reader;
+use serve::Wanted;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+use watcher::Watcher;
+use writer::Writer;
+
+/// Follows a scene until the process is asked to end.
+pub fn run(arguments: &Watch, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
+    let targets = outputs(arguments)?;
+    let threads = ThreadPoolBuilder::new().num_threads(arguments.taking.threads.unwrap_or(0)).build();
+    let threads = threads.map_err(|error| Problem::new(format!("cannot start the threads: {error}")))?;
+    let (hub, requests) = Hub::new();
+    let desk = Arc::new(Desk::default());
+    let names = match targets.as_slice() {
+        [] => String::new(),
+        targets => format!("{}: ", build::names(targets)),
+    };
+    let depth = arguments.taking.look.bits;
+    let own: Vec<PathBuf> = targets.iter().map(|target| target.path.clone()).collect();
+    let writer = match targets.is_empty() {
+        true => None,
+        false => Some(Writer::start(targets, depth, interrupt.clone(), terminal)?),
+    };
+    let painter = Painter {
+        desk: desk.clone(),
+        hub: hub.clone(),
+        writer,
+        threads: Arc::new(threads),
+        terminal,
+        quiet: arguments.quiet,
+        names,
+    };
+    let paint = move || {
+        // A defect in there has been reported by the hook; nothing would be painted any more.
+        let _ = catch_unwind(AssertUnwindSafe(|| painter.run()));
+        std::process::exit(101);
+    };
+    let started = std::thread::Builder::new().name("paint".into()).spawn(paint);
+    started.map_err(|error| Problem::new(format!("cannot start a thread: {error}")))?;
+    if let Some(address) = arguments.serve {
+        let editor = Editor::new(arguments.editor_url.clone(), arguments.open_with)?;
+        show(hub.clone(), Wanted { address, editor }, arguments.open)?;
+    }
+    let told = hub.clone();
+    let watcher = Watcher::new(arguments.poll.map(Duration::from_millis), move || told.ask(Request::Look))?;
+    let reader = Reader::new(&arguments.scene, &arguments.reading, arguments.taking.overrides(), &own);
+    Engine::new(arguments, reader, watcher, desk, hub, interrupt.clone(), terminal).run(&requests)
+}
+
+/// Serves the page, and says where.
+fn show(hub: Arc<Hub>, wanted: Wanted, open: bool) -> Result<(), Problem> {
+    let url = serve::start(hub, wanted)?;
+    print(format!("{url}\n").as_bytes())?;
+    if open {
+        let problem = |error| Problem::new(format!("no browser opens: {}", plain(&error)));
+        open::that_detached(&url)
+            .map_err(|error| problem(error).help("open the printed address yourself"))?;
+    }
+    Ok(())
+}
+
+/// Where the picture goes. Everything that can be seen to be wrong before a file is read is found here.
+fn outputs(arguments: &Watch) -> Result<Vec<Target>, Problem> {
+    if is_standard(&arguments.scene) {
+        return Err(Problem::new("standard input does not change: `rtc watch` wants a file"));
+    }
+    if arguments.scene.is_dir() {
+        let problem = Problem::new(format!("`{}` is a folder, not a scene", arguments.scene.display()));
+        return Err(problem.help("name a .rt file in it"));
+    }
+    if !arguments.scene.exists() {
+        let problem = Problem::new(format!("there is no file `{}`", arguments.scene.display()));
+        return Err(problem.help("`rtc init` makes a first scene"));
+    }
+    let targets = match arguments.outputs.as_slice() {
+        [] if arguments.serve.is_some() => vec![],
+        [] => vec![Target::beside(&arguments.scene)],
+        outputs => targets(outputs)?,
+    };
+    if targets.iter().any(|target| is_standard(&target.path)) {
+        return Err(Problem::new("a picture that changes cannot go to standard output"));
+    }
+    refuse_inputs_as_outputs(std::slice::from_ref(&arguments.scene), &targets)?;
+    refuse_idle_depth(arguments.taking.look.bits, &targets)?;
+    Ok(targets)
+}

@@ -1,0 +1,211 @@
+//! Reading a scene that somebody is writing.
+//!
+//! Editors write in many ways: in place, emptying the file first, aside and then renamed, the old one moved away before. What
+//! is read in between is half of a text, or none. A scene is compiled when what it reads has come to hold something else
+//! than it did; and what looks like half of a text is read again for a while before it is believed.
+
+use crate::cli::Problem;
+use crate::cli::args::Reading;
+use crate::cli::input;
+use crate::cli::scene::{self, Loaded};
+use rt_lang::diagnostic::{Code, any_errors};
+use rt_lang::lower::Overrides;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant, SystemTime};
+
+/// How long half of a text is waited for.
+const PATIENCE: Duration = Duration::from_millis(500);
+/// How long a text that lacks its end is waited for where it has no errors.
+const DOUBT: Duration = Duration::from_millis(50);
+/// How often it is looked at meanwhile.
+const GLANCE: Duration = Duration::from_millis(5);
+/// A file that was changed so recently may change again without a new time.
+const FRESH: Duration = Duration::from_secs(1);
+
+/// What a file looks like from outside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Look {
+    length: u64,
+    changed: Option<SystemTime>,
+    taken: SystemTime,
+}
+
+/// A file that the scene read.
+#[derive(Clone, Debug)]
+struct Known {
+    look: Option<Look>,
+    /// None where there was nothing to read.
+    hash: Option<blake3::Hash>,
+    length: usize,
+}
+
+/// Reads a scene whenever what it reads has changed.
+pub struct Reader {
+    scene: PathBuf,
+    reading: Reading,
+    overrides: Overrides,
+    /// What is written by the one who reads: never a reason to read.
+    own: BTreeSet<PathBuf>,
+    known: BTreeMap<PathBuf, Known>,
+    /// The text that was read last.
+    text: String,
+    /// Since when it looks as if somebody were writing.
+    doubtful: Option<Instant>,
+}
+
+/// What looking at the files leads to.
+pub enum Seen {
+    /// They hold what they did.
+    Same,
+    /// They may be half written: look again after this long.
+    Later(Duration),
+    /// A scene was compiled, or could not be read.
+    New(Box<Result<Loaded, Problem>>),
+}
+
+impl Reader {
+    /// For a scene; nothing is read yet.
+    pub fn new(scene: &Path, reading: &Reading, overrides: Overrides, own: &[PathBuf]) -> Reader {
+        Reader {
+            scene: scene.into(),
+            reading: reading.clone(),
+            overrides,
+            own: own.iter().filter_map(|path| std::path::absolute(path).ok()).collect(),
+            known: BTreeMap::new(),
+            text: String::new(),
+            doubtful: None,
+        }
+    }
+
+    /// The files that matter.
+    pub fn files(&self) -> impl Iterator<Item = PathBuf> {
+        self.known.keys().cloned().chain([self.scene.clone()])
+    }
+
+    /// Looks whether something has changed, and if so reads and compiles. `set` stands beside the settings of the command
+    /// line, in whose place it comes; `anyway` compiles also what is the same.
+    pub fn look(&mut self, set: &BTreeMap<String, String>, anyway: bool) -> Seen {
+        if !anyway && self.doubtful.is_none() && !self.known.is_empty() && !self.has_changed() {
+            return Seen::Same;
+        }
+        let reading = Reading { set: settings(&self.reading.set, set), ..self.reading.clone() };
+        let loaded = scene::load(&self.scene, &reading, &self.overrides);
+        let known = self.read_by(&loaded);
+        if let Some(wait) = self.doubt(&loaded, &known) {
+            return Seen::Later(wait);
+        }
+        self.doubtful = None;
+        self.known = known;
+        if let Ok(loaded) = &loaded {
+            self.text.clone_from(&loaded.sources.get(loaded.id).text);
+        }
+        Seen::New(Box::new(loaded))
+    }
+
+    /// How long to wait before what was read is believed, if it looks as if somebody were in the middle of writing it.
+    fn doubt(
+        &mut self,
+        loaded: &Result<Loaded, Problem>,
+        known: &BTreeMap<PathBuf, Known>,
+    ) -> Option<Duration> {
+        let had = |path: &PathBuf| self.known.get(path).is_some_and(|before| before.length > 0);
+        let emptied = known.iter().any(|(path, now)| now.length == 0 && had(path));
+        let (wrong, cut) = match loaded {
+            Err(_) => (true, had(&absolute(&self.scene))),
+            Ok(loaded) => {
+                let text = &loaded.sources.get(loaded.id).text;
+                let cut = text.len() < self.text.len() && self.text.starts_with(text.as_str());
+                (any_errors(&loaded.compiled.diagnostics), cut)
+            }
+        };
+        if !emptied && !cut {
+            return None;
+        }
+        let since = *self.doubtful.get_or_insert_with(Instant::now);
+        let patience = if wrong || emptied { PATIENCE } else { DOUBT };
+        (since.elapsed() < patience).then_some(GLANCE)
+    }
+
+    /// Whether a file holds something else than when it was read.
+    fn has_changed(&mut self) -> bool {
+        let Reader { known, own, .. } = self;
+        known.iter_mut().filter(|(path, _)| !own.contains(*path)).any(|(path, known)| {
+            let look = look(path);
+            let settled = |look: &Look| {
+                let age = look.changed.and_then(|changed| look.taken.duration_since(changed).ok());
+                age.is_some_and(|age| age > FRESH)
+            };
+            let outside = |look: &Look| (look.length, look.changed);
+            // A time that is long past does not come twice.
+            if look.map(|look| outside(&look)) == known.look.map(|look| outside(&look))
+                && known.look.is_none_or(|look| settled(&look))
+            {
+                return false;
+            }
+            let now = hashed(path);
+            known.look = look;
+            now.map(|(hash, _)| hash) != known.hash
+        })
+    }
+
+    /// What a scene has read.
+    fn read_by(&self, loaded: &Result<Loaded, Problem>) -> BTreeMap<PathBuf, Known> {
+        let asked = loaded.iter().flat_map(|loaded| loaded.files.held());
+        let mut known: BTreeMap<PathBuf, Known> = asked
+            .map(|(path, bytes)| {
+                let path = absolute(&path);
+                let (hash, length) =
+                    (bytes.as_deref().map(blake3::hash), bytes.map_or(0, |bytes| bytes.len()));
+                (path.clone(), Known { look: look(&path), hash, length })
+            })
+            .collect();
+        if loaded.is_err() {
+            // What it would read is what it read before.
+            known.extend(self.known.iter().map(|(path, known)| (path.clone(), known.clone())));
+        }
+        let scene = absolute(&self.scene);
+        let look = look(&scene);
+        let (hash, length) = match loaded {
+            // What is no text is not held: it is read again until it is old enough to be known by its time.
+            Ok(loaded) if refused(loaded) => (None, 1),
+            Ok(loaded) => {
+                let text = &loaded.sources.get(loaded.id).text;
+                (Some(blake3::hash(text.as_bytes())), text.len())
+            }
+            Err(_) => (None, 0),
+        };
+        known.insert(scene, Known { look, hash, length });
+        known
+    }
+}
+
+/// Settings of the command line, but for those of the same name.
+fn settings(given: &[String], set: &BTreeMap<String, String>) -> Vec<String> {
+    let name = |setting: &str| setting.split('=').next().unwrap_or("").trim().to_string();
+    let kept = given.iter().filter(|setting| !set.contains_key(&name(setting))).cloned();
+    kept.chain(set.iter().map(|(name, value)| format!("{name}={value}"))).collect()
+}
+
+/// Whether the bytes of a scene were not worth compiling.
+fn refused(loaded: &Loaded) -> bool {
+    let codes = [Code::E0009, Code::E0406];
+    loaded.sources.len() == 1
+        && loaded.compiled.diagnostics.iter().any(|diagnostic| codes.contains(&diagnostic.code))
+}
+
+fn look(path: &Path) -> Option<Look> {
+    let metadata = std::fs::metadata(path).ok()?;
+    Some(Look { length: metadata.len(), changed: metadata.modified().ok(), taken: SystemTime::now() })
+}
+
+/// The hash of what a plain file holds, and its length.
+fn hashed(path: &Path) -> Option<(blake3::Hash, usize)> {
+    let plain = std::fs::metadata(path).is_ok_and(|metadata| metadata.is_file());
+    let bytes = plain.then(|| input::read_bytes(path, u64::MAX - 1).ok()).flatten()?;
+    Some((blake3::hash(&bytes), bytes.len()))
+}
+
+fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.into())
+}

@@ -1,0 +1,131 @@
+// Why a pixel looks as it does, as `rtc why --json` has it.
+
+import { count, element, figures, part, percent } from "./element.js";
+import { place } from "./places.js";
+
+const PATHS = {
+  seen: "seen at once",
+  direct: "direct",
+  caustic: "focused by glass or mirrors",
+  mirrored: "mirrored",
+  refracted: "refracted",
+};
+
+/// The panel. `on` has `ask(x, y)` and `mark(pixel or null)`.
+export class Inspector {
+  constructor(on) {
+    this.on = on;
+    this.pixel = null;
+    this.asked = 0;
+  }
+
+  /// Marks a pixel and asks nothing yet.
+  mark(pixel) {
+    this.on.mark(pixel);
+  }
+
+  /// Asks why a pixel looks as it does.
+  async look(pixel) {
+    this.pixel = pixel;
+    this.on.mark(pixel);
+    part("why-close").hidden = false;
+    part("side").classList.add("asking");
+    await this.ask();
+  }
+
+  /// Asks again, as the picture now shows another text.
+  refresh(film) {
+    if (!this.pixel || film.generation === this.generation) return;
+    this.generation = film.generation;
+    this.ask();
+  }
+
+  async ask() {
+    const asked = ++this.asked;
+    const [x, y] = this.pixel;
+    part("why").setAttribute("aria-busy", "true");
+    const answer = await this.on.ask(x, y).catch((error) => ({ error: error.message }));
+    // Another pixel has been chosen since.
+    if (asked !== this.asked) return;
+    part("why").removeAttribute("aria-busy");
+    part("why").replaceChildren(...(answer.ok ? told(answer.why) : [element("p", { class: "hint" }, answer.error)]));
+    part("why").dataset.pixel = `${x},${y}`;
+  }
+
+  clear() {
+    this.asked++;
+    this.pixel = null;
+    this.on.mark(null);
+    part("why-close").hidden = true;
+    part("side").classList.remove("asking");
+    delete part("why").dataset.pixel;
+    part("why").replaceChildren(element("p", { class: "hint" }, "Click a pixel: what it shows, what it is made of, and where its light comes from."));
+  }
+}
+
+function told(why) {
+  const [r, g, b] = why.radiance;
+  const luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  const relative = why.error != null && luminance > 0 ? ` (${percent(why.error / luminance)})` : "";
+  return [
+    element("dl", { class: "numbers" },
+      ...entry("pixel", `${why.pixel[0]}, ${why.pixel[1]}`),
+      ...entry("radiance", `${[r, g, b].map((v) => figures(v)).join("  ")} W/m²`, { "data-radiance": JSON.stringify(why.radiance) }),
+      ...entry("error", why.error == null ? "unknown yet" : `± ${figures(why.error, 3)}${relative}`),
+      ...entry("samples", count(why.samples)),
+      ...(why.coverage < 1 ? entry("covered", percent(why.coverage)) : []),
+      ...(why.depth == null ? [] : entry("distance", `${figures(why.depth)} m`)),
+      ...(why.normal == null ? [] : entry("normal", why.normal.map((v) => v.toFixed(3).replace("-", "−")).join("  ")))),
+    element("h3", {}, "Shows"),
+    ...(why.shows.length ? why.shows.map(shown) : [element("p", { class: "hint" }, "Nothing but the background.")]),
+    element("h3", {}, "Light from"),
+    shares(why.lights, light),
+    element("h3", {}, "By paths"),
+    shares(why.paths, path),
+  ];
+}
+
+function entry(name, value, attributes = {}) {
+  return [element("dt", {}, name), element("dd", attributes, value)];
+}
+
+/// A thing with its uses, the outermost first, and its material.
+function shown(what) {
+  const { share, material } = what;
+  const head = element("p", { class: "thing" }, element("strong", {}, title(what)), element("span", { class: "share" }, percent(share)));
+  const made = material && element("p", { class: "material" }, "of ",
+    element("span", {}, material.name && material.name !== material.kind ? `${material.name} (${material.kind})` : material.kind),
+    material.place ? element("span", { class: "at" }, " ", short(material.place)) : null);
+  return element("div", { class: "shown" }, head, uses(what.uses), made);
+}
+
+function title({ kind, number, count: lights }) {
+  if (lights > 1) return `${lights} of ${kind}`;
+  return number ? `${kind} ${number.this} of ${number.of}` : kind;
+}
+
+function uses(all) {
+  if (all.length === 0) return element("p", { class: "hint" }, "chosen for you");
+  return element("ol", { class: "uses" }, ...all.map((use) => element("li", {}, short(use), element("code", {}, use.text))));
+}
+
+/// The file's name and line; the rest is in the title.
+function short({ file, start }) {
+  return place({ file, line: start.line, column: start.column }, `${file.split(/[\\/]/).pop()}:${start.line}`);
+}
+
+function shares(all, describe) {
+  const rows = all.map((one) => element("li", {}, ...describe(one),
+    element("meter", { min: 0, max: 1, value: one.share, "aria-hidden": "true" }),
+    element("span", { class: "share" }, percent(one.share))));
+  return element("ul", { class: "shares" }, ...rows);
+}
+
+function light(one) {
+  const last = one.uses.at(-1);
+  return [element("span", {}, title(one), last ? element("span", { class: "at" }, " ", short(last)) : null)];
+}
+
+function path({ kind, order }) {
+  return [element("span", {}, PATHS[kind] ?? (order ? `indirect, by ${order} surface${order === 1 ? "" : "s"}` : kind))];
+}
