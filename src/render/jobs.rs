@@ -129,6 +129,6 @@ impl Jobs for Single {
     }
 }
 
-fn wide([r, g, b]: [f32; 3]) -> Rgb {
+pub(super) fn wide([r, g, b]: [f32; 3]) -> Rgb {
     Rgb::new(f64::from(r), f64::from(g), f64::from(b))
 }

@@ -19,6 +19,7 @@
 //! | [`observer`] | watching paths |
 //! | [`apart`] | a pixel taken apart: light by light, and by kinds of paths |
 //! | [`first`] | what camera rays meet first |
+//! | [`feedback`] | what many paths did, all over a picture |
 //! | [`film`] | exact sums |
 //! | `prepass` | exposure and the film's scale |
 //! | [`shares`] | how much of the light is of which lamp |
@@ -38,6 +39,7 @@ mod camera;
 mod caustic;
 pub mod control;
 pub mod exact;
+pub mod feedback;
 pub mod film;
 pub mod first;
 mod functions;
