@@ -3,14 +3,17 @@
 use crate::check::Allow;
 use crate::diagnostic::{Code, Diagnostic, Severity, any_errors};
 
-/// Takes away the warnings that are allowed where they are: at a statement or inside it, or inside what it uses. Gives
+/// Takes away the warnings that are allowed where they are: at a statement or inside it, or inside what it uses; of
+/// those about two things, at either. Gives
 /// a warning for each that allows nothing; none where there are errors, for these may hide what is allowed.
 pub(crate) fn allow(allows: &[Allow], diagnostics: &mut Vec<Diagnostic>) -> Vec<Diagnostic> {
     let mut used = vec![false; allows.len()];
     let allowed = |allow: &Allow, warning: &Diagnostic| {
         let here = |span| allow.on.contains(span);
         allow.code == warning.code
-            && (here(warning.primary.span) || warning.uses.iter().any(|used| here(used.span)))
+            && (here(warning.primary.span)
+                || warning.labels.iter().any(|other| here(other.span))
+                || warning.uses.iter().any(|used| here(used.span)))
     };
     diagnostics.retain(|diagnostic| {
         let warning = diagnostic.severity() == Severity::Warning;

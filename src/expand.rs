@@ -7,7 +7,7 @@
 //!
 //! - Quadrics have unit axes and the whole of their map in `place: matrix(…)`.
 //! - A direction of length 1 is kept by lowering. So that the camera's survives the difference of two points, it
-//!   looks at a point so far away along it that its own place is lost in rounding.
+//!   looks at the nearest point along it that no rounding tells from the direction.
 //! - The spaces of textures lie in `grain: matrix(…)`.
 //! - Where lowering divides or takes a tangent, the number is searched that leads to the one wanted. There is one,
 //!   since the scene came from a text.
@@ -21,6 +21,8 @@ use crate::files::{Contents, FilePath};
 use crate::math::{DAffine3, DMat3, DVec3};
 use crate::scene::shape::{Form, Quadric};
 use crate::scene::{ImageId, Light, Material, Paint, Primitive, Scene, Shape, Texture, TextureId};
+use crate::span::SourceId;
+use crate::syntax;
 use numbers::{at, matrix, number, preimage, quoted, rgb, triple};
 
 /// Writes a scene as a text that lies in a place below the root folder. `contents` says where the scene's pictures and
@@ -51,7 +53,23 @@ pub fn expand(scene: &Scene, contents: &Contents, place: &FilePath) -> Result<St
     }
     flat.put(view::camera(&scene.camera, &scene.develop));
     flat.put(view::render(&scene.trace, &scene.develop));
-    Ok(flat.text)
+    Ok(laid_out(&flat.text))
+}
+
+/// So much is laid out at once, in bytes: the text may be far larger than what its tree would leave room for.
+const CHUNK: usize = 1 << 20;
+
+/// The text as `rtc fmt` lays it out.
+fn laid_out(text: &str) -> String {
+    let mut out = String::with_capacity(text.len() + text.len() / 4);
+    let mut rest = text;
+    while !rest.is_empty() {
+        let least = rest.floor_char_boundary(CHUNK);
+        let end = rest[least..].find('\n').map_or(rest.len(), |line_end| least + line_end + 1);
+        out.push_str(&syntax::format(SourceId(0), &rest[..end]).0);
+        rest = &rest[end..];
+    }
+    out
 }
 
 /// A text on its way.

@@ -153,11 +153,15 @@ fn stages(
     diagnostics.extend(found);
     let lowered = lower::lower(&things, &options.overrides, files, sources, &meshes);
     diagnostics.extend(lowered.diagnostics);
+    check::blame(&settings, sources, main, &mut diagnostics);
     if !diagnostic::any_errors(&diagnostics) {
         diagnostics.extend(lower::nothing_to_see(&things, main));
     }
     if let Some(scene) = lowered.scene.as_ref().filter(|_| !diagnostic::any_errors(&diagnostics)) {
         diagnostics.extend(lint::lint(scene, &things.origins, &lowered.marks));
+        for (camera, marks) in &lowered.others {
+            diagnostics.extend(lint::look_through(scene, camera, &things.origins, marks));
+        }
     }
     let unused = allow::allow(&program.allows, &mut diagnostics);
     diagnostics.extend(unused);

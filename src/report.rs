@@ -11,7 +11,7 @@ mod sarif;
 
 use crate::diagnostic::{Diagnostic, Label, Severity, Use};
 use crate::source::Sources;
-use crate::span::Span;
+use crate::span::{SourceId, Span};
 use excerpt::Excerpt;
 pub use machine::{SCHEMA, github, json, short};
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, ThemeCharacters, ThemeStyles};
@@ -54,11 +54,26 @@ pub fn all(diagnostics: &[Diagnostic], sources: &Sources, style: Style) -> Strin
     if shown.len() < worth {
         text.push_str(&format!("… and {} more\n", worth - shown.len()));
     }
-    if let Some(first) = shown.first() {
-        let name = printable(&sources.get(first.primary.span.source).name);
-        text.push_str(&format!("{} in {name}\n", count(diagnostics)));
+    if !shown.is_empty() {
+        text.push_str(&format!("{} in {}\n", count(diagnostics), places(diagnostics, sources)));
     }
     text
+}
+
+/// The names of the sources that diagnostics are in: `a.rt`, `a.rt and b.rt`, `a.rt and 3 others`.
+fn places(diagnostics: &[Diagnostic], sources: &Sources) -> String {
+    let mut ids: Vec<SourceId> =
+        diagnostics.iter().map(|diagnostic| diagnostic.primary.span.source).collect();
+    ids.sort_unstable();
+    ids.dedup();
+    let mut names: Vec<String> = ids.into_iter().map(|id| printable(&sources.get(id).name)).collect();
+    // Each setting is a source by itself.
+    names.dedup();
+    match names.as_slice() {
+        [first, second] => format!("{first} and {second}"),
+        [first, _, _, ..] => format!("{first} and {} others", names.len() - 1),
+        names => names.concat(),
+    }
 }
 
 /// How often one code is shown at one place: a slip in a loop has another value each turn.

@@ -33,7 +33,8 @@ const EDGES: &[(&str, &[&str])] = &[
         &["span", "source", "diagnostic", "files", "math", "color", "schema", "eval", "asset", "scene"],
     ),
     // Where pictures and meshes were read stands beside the scene.
-    ("expand", &["files", "math", "color", "scene"]),
+    // What it writes is laid out as `rtc fmt` does.
+    ("expand", &["span", "files", "math", "color", "syntax", "scene"]),
     ("export", &["asset", "math", "color", "scene"]),
     ("lint", &["span", "diagnostic", "math", "color", "eval", "scene", "lower"]),
     ("render", &["math", "color", "develop", "asset", "scene"]),

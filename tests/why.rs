@@ -224,7 +224,7 @@ fn the_depth_and_normals_of_a_ball_are_a_balls() {
     let tracer = known.tracer();
     let hits = tracer.first_hits(Window::whole([size, size]), 64, &Control::new()).unwrap();
     let middle = hits.pixel(size / 2, size / 2);
-    let step = 2.0 * (15f64.to_radians()).tan() / f64::from(size);
+    let step = 2.0 * rt_lang::math::tan(15f64.to_radians()) / f64::from(size);
     // The mean over a pixel about the nearest point is a little behind it.
     let depth = middle.depth().unwrap();
     assert!((4.0..4.0 + 16.0 * step * step).contains(&depth), "{depth}");

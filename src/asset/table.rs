@@ -47,7 +47,7 @@ pub enum Cells {
 pub fn read(bytes: &[u8]) -> Result<Table, String> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let separator = separator(bytes);
-    let mut reader = csv::ReaderBuilder::new().delimiter(separator).comment(Some(b'#')).from_reader(bytes);
+    let mut reader = reader(bytes, separator);
     let heads = reader.headers().map_err(|error| problem(&error))?.clone();
     if heads.is_empty() {
         return Err("it is empty".into());
@@ -59,16 +59,21 @@ pub fn read(bytes: &[u8]) -> Result<Table, String> {
         }
     }
     let mut rows = 0;
+    // For each column how many of its numbers turned out to be texts.
+    let mut turned = vec![0; columns.len()];
     let mut record = csv::StringRecord::new();
     while reader.read_record(&mut record).map_err(|error| problem(&error))? {
-        rows += 1;
-        if rows * columns.len() > MAX_CELLS {
+        if (rows + 1) * columns.len() > MAX_CELLS {
             return Err(format!("it has more than {MAX_CELLS} cells"));
         }
-        for (column, cell) in columns.iter_mut().zip(&record) {
-            column.push(cell);
+        for ((column, turned), cell) in columns.iter_mut().zip(&mut turned).zip(&record) {
+            if column.push(cell) {
+                *turned = rows;
+            }
         }
+        rows += 1;
     }
+    restore(bytes, separator, &mut columns, &turned);
     columns.iter_mut().for_each(Column::finish);
     for column in &columns {
         if column.unit.is_some() && matches!(column.cells, Cells::Texts(_)) {
@@ -76,6 +81,30 @@ pub fn read(bytes: &[u8]) -> Result<Table, String> {
         }
     }
     Ok(Table { columns, rows })
+}
+
+fn reader(bytes: &[u8], separator: u8) -> csv::Reader<&[u8]> {
+    csv::ReaderBuilder::new().delimiter(separator).comment(Some(b'#')).from_reader(bytes)
+}
+
+/// Reads the first cells once more of those columns that turned to texts behind them: as texts they are what is
+/// written, such as `007` or `1.50`. `turned` is how many there are.
+fn restore(bytes: &[u8], separator: u8, columns: &mut [Column], turned: &[usize]) {
+    let most = turned.iter().copied().max().unwrap_or(0);
+    let mut first: Vec<Vec<SmolStr>> = turned.iter().map(|_| vec![]).collect();
+    for record in reader(bytes, separator).records().take(most).flatten() {
+        for ((texts, turned), cell) in first.iter_mut().zip(turned).zip(&record) {
+            if texts.len() < *turned {
+                texts.push(cell.trim().into());
+            }
+        }
+    }
+    for (column, mut first) in columns.iter_mut().zip(first) {
+        if let Cells::Texts(texts) = &mut column.cells {
+            first.append(texts);
+            *texts = first;
+        }
+    }
 }
 
 /// What stands between the cells: the first of these in the first line.
@@ -117,8 +146,9 @@ fn head(text: &str) -> Result<Column, String> {
 }
 
 impl Column {
-    /// Adds a cell, without white space around it. What is no number makes the whole column texts.
-    fn push(&mut self, cell: &str) {
+    /// Adds a cell, without white space around it. What is no number makes the whole column texts: whether it did,
+    /// and the texts of the cells before it are still to be read.
+    fn push(&mut self, cell: &str) -> bool {
         match &mut self.cells {
             Cells::Texts(texts) => texts.push(cell.trim().into()),
             // Most have no white space to be found: the reader's own trimming would copy every record.
@@ -129,14 +159,12 @@ impl Column {
                     values.push(value);
                 }
                 _ => {
-                    // Numbers before it are texts as well, written as short as they can be.
-                    let mut texts: Vec<SmolStr> =
-                        values.iter().map(|value| value.to_string().into()).collect();
-                    texts.push(cell.trim().into());
-                    self.cells = Cells::Texts(texts);
+                    self.cells = Cells::Texts(vec![cell.trim().into()]);
+                    return true;
                 }
             },
         }
+        false
     }
 
     /// Brings its numbers to base units.
@@ -159,6 +187,13 @@ mod tests {
         assert_eq!(table.columns[1].cells, Cells::Numbers { values: vec![2.0, 4.0], whole: true });
         assert_eq!(table.columns[2].cells, Cells::Texts(vec!["a".into(), "b;c".into()]));
         assert_eq!(table.columns[0].unit.map(|unit| unit.factor), Some(1e-3));
+    }
+
+    #[test]
+    fn texts_that_look_like_numbers_keep_their_form() {
+        let table = read(b"id,n\n007,1\n 1.50,2\n\nx,3\n").unwrap();
+        assert_eq!(table.columns[0].cells, Cells::Texts(vec!["007".into(), "1.50".into(), "x".into()]));
+        assert_eq!(table.columns[1].cells, Cells::Numbers { values: vec![1.0, 2.0, 3.0], whole: true });
     }
 
     #[test]

@@ -67,7 +67,11 @@ impl<'a> Checker<'a> {
         self.scopes.push(scope);
         for cycle in cycles {
             let names: Vec<&Name> = cycle.iter().filter_map(|&item| items[item].name()).collect();
-            self.report(errors::cycle(&names));
+            let set = cycle.iter().find_map(|&item| setting(&items[item]).zip(items[item].name()));
+            self.report(match set {
+                Some((value, name)) => errors::cycle_of_setting(name, value.span, &names),
+                None => errors::cycle(&names),
+            });
         }
         let mut statements: Vec<Option<Statement>> = items.iter().map(|_| None).collect();
         for &index in &order {
@@ -200,6 +204,10 @@ impl<'a> Checker<'a> {
                 Type::Invalid
             }
         };
+        if body.span.range().is_empty() {
+            // Its variable counts as declared around it, where its body probably stands.
+            return StatementKind::Invalid;
+        }
         let item = if item == Type::Scalar(Element::Zero) { Type::Scalar(Element::Int) } else { item };
         let mut scope = self.scope(Place::Parameters);
         let dim = match item {

@@ -205,6 +205,23 @@ pub(super) fn cycle(names: &[&Name]) -> Diagnostic {
     diagnostic.help(format!("break the cycle {}", path.join(" → ")))
 }
 
+/// `--set n=n`, also by way of others.
+pub(super) fn cycle_of_setting(name: &Name, value: Span, names: &[&Name]) -> Diagnostic {
+    let diagnostic = Diagnostic::new(Code::E0104, format!("`{}` is set by way of itself", name.text), value)
+        .at("needs what it sets");
+    let others: Vec<&str> =
+        names.iter().map(|other| other.text.as_str()).filter(|other| *other != name.text).collect();
+    match others.is_empty() {
+        true => diagnostic.help("give it a value that does not use it"),
+        false => diagnostic.help(format!(
+            "{} {} `{}`",
+            quoted(&others),
+            if others.len() == 1 { "uses" } else { "lead to" },
+            name.text
+        )),
+    }
+}
+
 pub(super) fn unused(name: &Name, ty: &Type) -> Diagnostic {
     let drawn = match ty {
         Type::Made(making) if making.kind.category() != Category::Material => {

@@ -1,5 +1,6 @@
 //! Expressions: their types, and the units of what they compute.
 
+use super::program::Arithmetic;
 use super::types::{Element, NUMBER, Type};
 use super::{Checker, Expr, ExprKind, errors};
 use crate::color;
@@ -57,7 +58,7 @@ impl Checker<'_> {
                         true => errors::unknown_in_setting(&name),
                         false => errors::unknown_name(&name, &self.value_names()),
                     };
-                    self.report(diagnostic);
+                    self.report_lost(&name.text, diagnostic);
                     (ExprKind::Invalid, Type::Invalid)
                 }
             },
@@ -246,8 +247,12 @@ impl Checker<'_> {
         fits: impl Fn(&Type) -> bool,
     ) -> Option<()> {
         let wrong: Vec<_> = operands.into_iter().filter(|(_, ty)| !fits(ty)).collect();
-        for (span, ty) in &wrong {
-            self.report(errors::operand(symbol, wanted, *span, ty));
+        match wrong[..] {
+            // Wrong in the same way on both sides: what was to be joined is another thing, which is one slip.
+            [(span, a), (other, b)] if a.describe() == b.describe() => {
+                self.report(errors::operand(symbol, wanted, span, a).label(other, "so is this"));
+            }
+            _ => wrong.iter().for_each(|(span, ty)| self.report(errors::operand(symbol, wanted, *span, ty))),
         }
         wrong.is_empty().then_some(())
     }
@@ -286,8 +291,8 @@ impl Checker<'_> {
 /// An operation that gives a value of a type. What gives a number, but for comparisons, is of numbers.
 fn operation(operator: BinaryOp, [left, right]: [Expr; 2], ty: &Type) -> ExprKind {
     let (left, right) = (Box::new(left), Box::new(right));
-    match ty {
-        Type::Scalar(element) => {
+    match (ty, Arithmetic::of(operator)) {
+        (Type::Scalar(element), Some(operator)) => {
             ExprKind::Arithmetic { operator, left, right, int: *element == Element::Int }
         }
         _ => ExprKind::Binary { operator, left, right },

@@ -1,9 +1,11 @@
 //! The fields of what may stand before `{`: of built-in kinds, of parts, and of what may be any of them.
 
-use super::Checker;
 use super::program::FieldPlace;
 use super::types::Kind;
-use crate::schema::PLACED;
+use super::{Checker, errors};
+use crate::schema::{PLACED, familiar};
+use crate::span::Span;
+use crate::syntax::ast::Name;
 
 impl Checker<'_> {
     /// The field of a kind with this name.
@@ -60,5 +62,51 @@ impl Checker<'_> {
             (Kind::Part(part), FieldPlace::Placed(index)) => self.program.part(part).params.len() + index,
             (_, FieldPlace::Param(index) | FieldPlace::Index(index) | FieldPlace::Placed(index)) => index,
         }
+    }
+
+    /// `told` is where the last one of this body was reported whose way to write it here takes in several: `min` and
+    /// `max`, which are one slip.
+    pub(super) fn unknown_field(
+        &mut self,
+        kind: Kind,
+        name: &Name,
+        places: &[Option<Span>],
+        told: &mut Option<usize>,
+    ) {
+        let all = self.field_names(kind);
+        let all: Vec<&str> = all.iter().map(String::as_str).collect();
+        let free: Vec<&str> =
+            all.iter().zip(places).filter(|(_, place)| place.is_none()).map(|(name, _)| *name).collect();
+        let kind_name = self.kind_name(kind);
+        let diagnostic = errors::unknown_field(&kind_name, kind.category(), name, &free, &all);
+        let joined =
+            familiar::field(&kind_name, kind.category(), &name.text).is_some_and(|here| !here.same_value);
+        let before = told.filter(|_| joined).and_then(|told| self.diagnostics.get_mut(told));
+        if let Some(before) = before.filter(|before| before.help == diagnostic.help) {
+            *before = before.clone().label(name.span, "nor this one");
+            return;
+        }
+        *told = joined.then_some(self.diagnostics.len());
+        self.report(diagnostic);
+    }
+
+    /// The field that an unknown name probably means.
+    pub(super) fn probable_field(
+        &self,
+        kind: Kind,
+        name: &Name,
+        places: &[Option<Span>],
+    ) -> Option<FieldPlace> {
+        let all = self.field_names(kind);
+        let free: Vec<&str> = all
+            .iter()
+            .zip(places)
+            .filter(|(_, place)| place.is_none())
+            .map(|(name, _)| name.as_str())
+            .collect();
+        let here =
+            familiar::field(&self.kind_name(kind), kind.category(), &name.text).and_then(|here| here.name);
+        let here = here.filter(|name| free.contains(name));
+        here.or_else(|| errors::closest(&name.text, &free)).and_then(|guess| self.find_field(kind, guess))
     }
 }

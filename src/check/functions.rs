@@ -294,15 +294,24 @@ struct Arguments<'c, 'a, 'v> {
 impl Arguments<'_, '_, '_> {
     /// Each argument is a quantity of its own dimension.
     fn each(&mut self, wanted: &[units::Dim], gives: Type) -> Option<Type> {
-        let mut sound = true;
-        for (index, dim) in wanted.iter().enumerate() {
-            let fits = matches!(self.types[index], Type::Scalar(element) if element.fits(*dim));
-            if !fits {
-                sound = false;
-                let span = self.values[index].span;
-                let text = self.checker.text(span);
-                self.checker.report(errors::argument(self.function, *dim, span, text, &self.types[index]));
-            }
+        let fits =
+            |index: usize| matches!(self.types[index], Type::Scalar(element) if element.fits(wanted[index]));
+        let mut wrong: Vec<usize> = (0..wanted.len()).filter(|index| !fits(*index)).collect();
+        let sound = wrong.is_empty();
+        // Those that are wrong in the same way, such as three numbers without a unit, are one slip.
+        while let Some(&first) = wrong.first() {
+            let alike = |index: &usize| {
+                wanted[*index] == wanted[first]
+                    && self.types[*index].describe() == self.types[first].describe()
+            };
+            let (alike, others): (Vec<usize>, Vec<usize>) = wrong.iter().partition(|index| alike(index));
+            let places: Vec<_> = alike
+                .iter()
+                .map(|&index| self.values[index].span)
+                .map(|span| (span, self.checker.text(span)))
+                .collect();
+            self.checker.report(errors::arguments(self.function, wanted[first], &places, &self.types[first]));
+            wrong = others;
         }
         sound.then_some(gives)
     }

@@ -6,7 +6,7 @@ use super::scope::{Item, Place, built_in};
 use super::types::{Element, FieldSet, Kind, Making, Type};
 use super::{Checker, errors};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::schema::{self, Category, Field, FieldType, KindId, PLACED, Preset, Rule, familiar};
+use crate::schema::{self, Category, Field, FieldType, KindId, PLACED, Preset, Rule};
 use crate::span::Span;
 use crate::syntax::ast::{self, Entry, ExprKind as Tree, Name, StatementKind as Statement};
 use crate::units;
@@ -77,7 +77,7 @@ impl Checker<'_> {
         }
         let Some(found) = self.lookup(&name.text) else {
             let diagnostic = errors::unknown(Code::E0101, "kind", name, &self.kind_names());
-            self.report(diagnostic);
+            self.report_lost(&name.text, diagnostic);
             // What stands inside is looked at as if the kind had been spelt right.
             let built_ins: Vec<&str> = schema::KINDS.iter().map(|kind| kind.name).collect();
             let guess = errors::closest(&name.text, &built_ins).and_then(schema::kind);
@@ -187,6 +187,9 @@ impl Checker<'_> {
     ) {
         let kind = making.kind;
         let mut places: Vec<Option<Span>> = vec![None; self.field_count(kind)];
+        let mut told = None;
+        // Those that are only taken to be meant by another name.
+        let mut guessed = vec![false; places.len()];
         for entry in entries {
             let (name, value) = match entry {
                 Entry::Field(field) => (&field.name, Some(&field.value)),
@@ -195,11 +198,13 @@ impl Checker<'_> {
             };
             let Some(field) = self.find_field(kind, &name.text) else {
                 if value.is_some() {
-                    self.unknown_field(kind, name, &places);
+                    self.unknown_field(kind, name, &places, &mut told);
                 }
                 // A misspelt field counts as given.
                 if let Some(field) = self.probable_field(kind, name, &places) {
-                    places[self.bit(kind, field)] = Some(name.span);
+                    let bit = self.bit(kind, field);
+                    places[bit] = Some(name.span);
+                    guessed[bit] = true;
                     make.fields.push((field, Expr::invalid(name.span)));
                 }
                 if let Some(value) = value.filter(|value| !matches!(value.kind, Tree::Name(_))) {
@@ -208,7 +213,10 @@ impl Checker<'_> {
                 continue;
             };
             let bit = self.bit(kind, field);
-            if let Some(first) = places[bit] {
+            if std::mem::take(&mut guessed[bit]) {
+                // The one before was something else, which was reported.
+                make.fields.retain(|(given, _)| *given != field);
+            } else if let Some(first) = places[bit] {
                 self.report(errors::repeated(name, first));
                 if let Some(value) = value {
                     self.value_of_field(kind, field, value);
@@ -290,29 +298,6 @@ impl Checker<'_> {
         }
     }
 
-    fn unknown_field(&mut self, kind: Kind, name: &Name, places: &[Option<Span>]) {
-        let all = self.field_names(kind);
-        let all: Vec<&str> = all.iter().map(String::as_str).collect();
-        let free: Vec<&str> =
-            all.iter().zip(places).filter(|(_, place)| place.is_none()).map(|(name, _)| *name).collect();
-        self.report(errors::unknown_field(&self.kind_name(kind), kind.category(), name, &free, &all));
-    }
-
-    /// The field that an unknown name probably means.
-    fn probable_field(&self, kind: Kind, name: &Name, places: &[Option<Span>]) -> Option<FieldPlace> {
-        let all = self.field_names(kind);
-        let free: Vec<&str> = all
-            .iter()
-            .zip(places)
-            .filter(|(_, place)| place.is_none())
-            .map(|(name, _)| name.as_str())
-            .collect();
-        let here =
-            familiar::field(&self.kind_name(kind), kind.category(), &name.text).and_then(|here| here.name);
-        let here = here.filter(|name| free.contains(name));
-        here.or_else(|| errors::closest(&name.text, &free)).and_then(|guess| self.find_field(kind, guess))
-    }
-
     /// Fields that exclude each other. Reported where this body gives at least one of them.
     fn conflicts(&mut self, kind: KindId, given: FieldSet, places: &[Option<Span>]) {
         let pair = |a: &'static str, b: &'static str| {
@@ -373,7 +358,7 @@ impl Checker<'_> {
             _ => {}
         }
         if let Some(diagnostic) = self.unknown_value(field.ty, value) {
-            self.report(diagnostic);
+            self.report_lost(&self.text(value.span).into(), diagnostic);
             return Expr::invalid(value.span);
         }
         let (checked, ty) = self.infer(value);

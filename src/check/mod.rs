@@ -26,7 +26,7 @@ mod unknown;
 pub use declared::{Declared, TYPES};
 pub use functions::Function;
 pub use program::*;
-pub use setting::{Setting, settings};
+pub use setting::{Setting, blame, settings};
 pub use textures::parameters as texture_parameters;
 pub use types::{Element, FieldSet, Kind, Making, Type, describe_wanted};
 
@@ -92,6 +92,12 @@ struct Checker<'a> {
     tables: BTreeMap<crate::files::FilePath, Option<TableId>>,
     program: Program,
     diagnostics: Vec<Diagnostic>,
+    /// Unknown names, each with its diagnostic by index: an inner scope may declare them.
+    lost: Vec<(usize, SmolStr)>,
+    /// What the scopes declared that were closed in this file.
+    closed: BTreeMap<SmolStr, Span>,
+    /// The names of the cameras of the file.
+    cameras: Vec<SmolStr>,
     /// How many declared names may still be compared with unknown ones.
     guesses: Cell<usize>,
     /// How many expressions and things were checked: what evaluating a body costs.
@@ -117,6 +123,9 @@ impl<'a> Checker<'a> {
             tables: BTreeMap::new(),
             program: Program::default(),
             diagnostics: vec![],
+            lost: vec![],
+            closed: BTreeMap::new(),
+            cameras: vec![],
             guesses: Cell::new(MAX_GUESSES),
             nodes: 0,
         }
@@ -124,6 +133,25 @@ impl<'a> Checker<'a> {
 
     fn report(&mut self, diagnostic: Diagnostic) {
         self.diagnostics.push(diagnostic);
+    }
+
+    /// Reports an unknown name.
+    fn report_lost(&mut self, name: &SmolStr, diagnostic: Diagnostic) {
+        self.lost.push((self.diagnostics.len(), name.clone()));
+        self.report(diagnostic);
+    }
+
+    /// Says of the unknown names of a file which of them a scope inside it declares.
+    fn say_closed(&mut self) {
+        let closed = std::mem::take(&mut self.closed);
+        for (index, name) in std::mem::take(&mut self.lost) {
+            if let Some(diagnostic) = self.diagnostics.get_mut(index)
+                && let Some(declared) =
+                    closed.get(&name).filter(|place| place.source == diagnostic.primary.span.source)
+            {
+                errors::declared_inside(diagnostic, &name, *declared);
+            }
+        }
     }
 
     /// The source text of a span.
@@ -157,6 +185,7 @@ impl<'a> Checker<'a> {
         let (_, ty) = self.infer(value);
         self.end_frame();
         self.diagnostics.truncate(reported);
+        self.lost.retain(|(index, _)| *index < reported);
         (ty != Type::Invalid).then_some(ty)
     }
 }

@@ -8,9 +8,10 @@ use super::scope::{Item, Place};
 use super::types::Type;
 use super::{Checker, errors};
 use crate::diagnostic::{Code, Diagnostic, Severity};
-use crate::schema::PLACED;
+use crate::schema::{PLACED, camera};
 use crate::syntax::ast::StatementKind as TreeStatement;
 use crate::syntax::ast::{self, BinaryOp, ExprKind as Tree, Name, Parameter, TypeName};
+use smol_str::SmolStr;
 
 /// What a call, or a use of a part, counts by itself, in expressions: about as long as it takes.
 const CALL: u64 = 9;
@@ -20,7 +21,10 @@ impl<'a> Checker<'a> {
     pub(super) fn file(&mut self, tree: &ast::File, main: bool) -> PartId {
         let (items, fields) = apart(&tree.body.entries);
         let place = if main { Place::Main } else { Place::Imported };
-        self.body("", &items, &fields, place, None)
+        self.cameras = items.iter().filter_map(camera_name).collect();
+        let part = self.body("", &items, &fields, place, None);
+        self.say_closed();
+        part
     }
 
     /// `part name { … }`
@@ -166,25 +170,33 @@ impl<'a> Checker<'a> {
             }
             return None;
         };
-        let [low, high] = [left, right].map(|end| self.declared_value(&name.text, declared, end));
         if !matches!(declared.ty(), Type::Scalar(_) | Type::Invalid) {
+            [left, right].into_iter().for_each(|end| drop(self.infer(end)));
             self.report(errors::range_of_what(range.span, &declared.describe()));
             return None;
         }
-        (declared.ty() != Type::Invalid).then_some([low, high])
+        let ends = [left, right].map(|end| self.declared_value(&name.text, declared, end));
+        if let (Some(low), Some(high)) = (literal(&ends[0]), literal(&ends[1]))
+            && low > high
+        {
+            self.report(errors::empty_range(range.span, self.text(left.span), self.text(right.span)));
+            return None;
+        }
+        (declared.ty() != Type::Invalid).then_some(ends)
     }
 
     /// What can be seen to be out of range before anything is evaluated.
     pub(super) fn literal_outside(&self, name: &str, value: &Expr, range: &[Expr; 2]) -> Option<Diagnostic> {
         let (x, low, high) = (literal(value)?, literal(&range[0])?, literal(&range[1])?);
-        let written = || self.text(range[0].span.to(range[1].span));
-        (!(low..=high).contains(&x)).then(|| errors::outside_range(name, written(), value.span))
+        let [low_text, high_text, text] = [&range[0], &range[1], value].map(|end| self.text(end.span));
+        let outside = || errors::outside_range(name, [low_text, high_text], text, value.span);
+        (!(low..=high).contains(&x)).then(outside)
     }
 
     /// A value where a type was declared.
     pub(super) fn declared_value(&mut self, name: &str, declared: &Declared, value: &ast::Expr) -> Expr {
         if let Some(diagnostic) = self.unknown_declared(declared, value) {
-            self.report(diagnostic);
+            self.report_lost(&self.text(value.span).into(), diagnostic);
             return Expr::invalid(value.span);
         }
         let (checked, ty) = self.infer(value);
@@ -318,6 +330,15 @@ impl<'a> Checker<'a> {
         let part = self.program.part(self.program.files[file.index()].part);
         self.program.insides[part.inside.index()].names.get(name)
     }
+}
+
+/// The name of a camera.
+fn camera_name(item: &Item) -> Option<SmolStr> {
+    let Item::Statement(ast::Statement { kind: TreeStatement::Thing { construct, name }, .. }) = item else {
+        return None;
+    };
+    let name = name.as_ref().filter(|_| construct.kind.first.text == camera::KIND.get().name)?;
+    Some(name.text.clone())
 }
 
 /// The value of a number as written, sign included.

@@ -364,7 +364,7 @@ pub enum ExprKind {
     /// A sum, difference, product or quotient of two numbers.
     Arithmetic {
         /// The operator.
-        operator: BinaryOp,
+        operator: Arithmetic,
         /// Left operand.
         left: Box<Expr>,
         /// Right operand.
@@ -406,6 +406,42 @@ pub enum ExprKind {
     },
     /// Makes a thing.
     Make(Box<Make>),
+}
+
+/// An operator that makes a number of two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arithmetic {
+    /// `+`
+    Add,
+    /// `-`
+    Subtract,
+    /// `*`
+    Multiply,
+    /// `/`
+    Divide,
+}
+
+impl Arithmetic {
+    /// The operator as such, if it is one.
+    pub fn of(operator: BinaryOp) -> Option<Arithmetic> {
+        Some(match operator {
+            BinaryOp::Add => Arithmetic::Add,
+            BinaryOp::Subtract => Arithmetic::Subtract,
+            BinaryOp::Multiply => Arithmetic::Multiply,
+            BinaryOp::Divide => Arithmetic::Divide,
+            _ => return None,
+        })
+    }
+
+    /// As written.
+    pub fn operator(self) -> BinaryOp {
+        match self {
+            Arithmetic::Add => BinaryOp::Add,
+            Arithmetic::Subtract => BinaryOp::Subtract,
+            Arithmetic::Multiply => BinaryOp::Multiply,
+            Arithmetic::Divide => BinaryOp::Divide,
+        }
+    }
 }
 
 /// A point of bounds.

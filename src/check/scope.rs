@@ -47,7 +47,7 @@ pub(super) struct Known {
     /// The statement that declares it, by its index in the scope.
     pub(super) item: usize,
     pub(super) used: bool,
-    /// Whether nobody needs to use it: what is drawn, a param of the file that is drawn.
+    /// Whether nobody needs to use it: what is drawn, what an imported file declares.
     pub(super) free: bool,
 }
 
@@ -81,6 +81,18 @@ impl<'t> Item<'t> {
                 | Tree::Function { name, .. } => Some(name),
                 Tree::For { .. } | Tree::If { .. } | Tree::Assert { .. } => None,
             },
+        }
+    }
+
+    /// The name that it would declare here, or inside, if it were understood: that of a loop without a body too, since
+    /// what stands behind it is probably the body.
+    fn lost_name(&self) -> Option<&'t Name> {
+        match self {
+            Item::Broken(broken) => broken.name.as_ref(),
+            Item::Statement(ast::Statement { kind: Tree::For { variable, body, .. }, .. }) => {
+                body.span.range().is_empty().then_some(variable)
+            }
+            Item::Statement(_) | Item::Rows(_) => None,
         }
     }
 
@@ -150,9 +162,7 @@ impl Checker<'_> {
         let mut scope = self.scope(place);
         for (item, statement) in items.iter().enumerate() {
             let (Item::Statement(_), Some(name)) = (statement, statement.name()) else { continue };
-            let free = statement.drawn()
-                || place == Place::Imported && !statement.param()
-                || place == Place::Main && statement.param();
+            let free = statement.drawn() || place == Place::Imported && !statement.param();
             match scope.names.get(&name.text) {
                 Some(&first) => self.report(errors::duplicate(name, Some(&scope.known[first].name))),
                 None => {
@@ -168,7 +178,7 @@ impl Checker<'_> {
         }
         // A broken item's name counts as declared where nothing else declares it: its slip is one error.
         for (item, statement) in items.iter().enumerate() {
-            let (Item::Broken(_), Some(name)) = (statement, statement.name()) else { continue };
+            let Some(name) = statement.lost_name() else { continue };
             if self.shadows(name).is_none() && !scope.names.contains_key(&name.text) {
                 scope.names.insert(name.text.clone(), scope.known.len());
                 let slot = self.slot();
@@ -185,6 +195,11 @@ impl Checker<'_> {
         let Some(scope) = self.scopes.pop() else { return };
         for known in scope.known.iter().filter(|known| !known.used && !known.free) {
             self.report(errors::unused(&known.name, &known.ty));
+        }
+        if !self.scopes.is_empty() {
+            for known in &scope.known {
+                self.closed.entry(known.name.text.clone()).or_insert(known.name.span);
+            }
         }
         let by_path = matches!(scope.place, Place::Part | Place::Group | Place::Imported);
         let Some(block) = block.filter(|_| !by_path) else { return };

@@ -1,9 +1,9 @@
 //! Settings from outside: `name=value`, each a source of its own.
 
 use super::errors;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Label};
 use crate::source::{Source, Sources};
-use crate::span::Span;
+use crate::span::{SourceId, Span};
 use crate::syntax;
 use crate::syntax::ast::{Expr, Name};
 
@@ -14,6 +14,22 @@ pub struct Setting {
     pub name: Name,
     /// Its value.
     pub value: Expr,
+}
+
+/// Points at a setting where the value that it gives is refused where the source has the name of its param: what is
+/// wrong is in the setting. A name means one thing in all of a file.
+pub fn blame(settings: &[Setting], sources: &Sources, main: SourceId, diagnostics: &mut [Diagnostic]) {
+    let of_value = |diagnostic: &&mut Diagnostic| {
+        diagnostic.code.as_str().starts_with("E04") && diagnostic.primary.span.source == main
+    };
+    for diagnostic in diagnostics.iter_mut().filter(of_value) {
+        let place = diagnostic.primary.span;
+        let set = settings.iter().find(|setting| *setting.name.text == *sources.text(place).trim());
+        if let Some(setting) = set {
+            diagnostic.primary.span = setting.value.span;
+            diagnostic.labels.push(Label { span: place, text: "used here".into() });
+        }
+    }
 }
 
 /// Reads settings, each of the form `name=value`, into sources named `--set`.

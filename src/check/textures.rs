@@ -31,6 +31,13 @@ impl Checker<'_> {
         span: Span,
     ) -> (ExprKind, Type) {
         const INVALID: (ExprKind, Type) = (ExprKind::Invalid, Type::Invalid);
+        // With too few of them by place, which is which is not known.
+        let named = arguments.iter().any(|argument| argument.name.is_some());
+        let required = parameters.iter().filter(|field| field.default == Preset::Required).count();
+        if !named && arguments.len() < required {
+            self.report(errors::argument_count(function, span, arguments.len()));
+            return INVALID;
+        }
         let mut given: Vec<Option<Expr>> = parameters.iter().map(|_| None).collect();
         let mut sound = true;
         for (place, (argument, (value, ty))) in arguments.iter().zip(values).enumerate() {

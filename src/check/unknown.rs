@@ -4,9 +4,10 @@ use super::declared::Declared;
 use super::types::Type;
 use super::{Checker, errors};
 use crate::diagnostic::Diagnostic;
-use crate::schema::FieldType;
+use crate::schema::{self, FieldType};
 use crate::span::Span;
 use crate::syntax::ast::{self, ExprKind as Tree, Name};
+use smol_str::SmolStr;
 
 impl Checker<'_> {
     /// What is wrong with a value that is an unknown name, where a field wants a type.
@@ -24,6 +25,10 @@ impl Checker<'_> {
             return None;
         }
         let name = Name { text: self.text(value.span).trim().into(), span: value.span };
+        if matches!(wanted, FieldType::Named(_)) && schema::kind(&name.text).is_none() {
+            let cameras: Vec<&str> = self.cameras.iter().map(SmolStr::as_str).collect();
+            return Some(errors::unknown_camera(&name, &cameras));
+        }
         Some(errors::unknown_value(wanted, &name, &self.value_names(), self.is_setting(value.span)))
     }
 

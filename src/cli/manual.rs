@@ -44,5 +44,18 @@ fn page(command: clap::Command) -> Result<Vec<u8>, Problem> {
     let man = clap_mangen::Man::new(command).title(name.to_uppercase()).manual("rtc manual");
     man.render(&mut page)
         .map_err(|error| Problem::new(format!("cannot make the page: {}", plain(&error))))?;
-    Ok(page)
+    Ok(unfilled(String::from_utf8(page).expect("a page is made of texts")).into_bytes())
+}
+
+/// The page with its examples as they are written: a reader of manuals joins lines and spreads words where nothing
+/// keeps it from that.
+///
+/// Source: groff(7), the requests `nf` and `fi`.
+fn unfilled(page: String) -> String {
+    let Some((before, examples)) = page.split_once(".SH EXTRA\n") else { return page };
+    let (examples, after) = match examples.find("\n.SH ") {
+        Some(end) => examples.split_at(end + 1),
+        None => (examples, ""),
+    };
+    format!("{before}.SH EXAMPLES\n.nf\n{examples}.fi\n{after}")
 }

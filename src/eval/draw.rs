@@ -248,10 +248,9 @@ impl<'p> Evaluator<'p> {
         let mut made = self.made(group::KIND, base, make);
         let built = self.end_buffer(outer);
         self.leave();
-        if let Some(site) = Rc::get_mut(&mut made.site) {
-            let aims = built.values.iter().any(|value| matches!(value, Value::Thing(_)));
-            site.group = Some(Rc::new(Group { built, level: self.buffers.len(), aims, inside }));
-        }
+        let site = Rc::get_mut(&mut made.site).expect("what was just made is shared with nobody");
+        let aims = built.values.iter().any(|value| matches!(value, Value::Thing(_)));
+        site.group = Some(Rc::new(Group { built, level: self.buffers.len(), aims, inside }));
         Value::Made(Rc::new(made))
     }
 

@@ -3,6 +3,7 @@
 use super::{MAX_TEXTURE_LEVELS, Value};
 use crate::check::{Declared, Expr, ExprKind, Function, Param, Variable};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::math::DVec3;
 use crate::schema::{Field, FieldType, KindId, Range};
 use crate::span::Span;
 use crate::syntax::ast::BinaryOp;
@@ -52,12 +53,21 @@ pub(super) fn turn(variable: &Variable, value: &Value) -> Option<String> {
 pub(super) fn out_of_range(kind: KindId, field: &Field, value: &Value, expr: &Expr) -> Option<Diagnostic> {
     match value {
         // Most are.
-        Value::Number(x) if field.range.contains(*x) => None,
-        Value::Tuple(v) if field.range.contains(v.min_element()) && field.range.contains(v.max_element()) => {
+        Value::Number(x) if field.range.contains(*x) && (*x != 0.0 || !is_direction(field.ty)) => None,
+        Value::Tuple(v)
+            if field.range.contains(v.min_element())
+                && field.range.contains(v.max_element())
+                && (*v != DVec3::ZERO || !is_direction(field.ty)) =>
+        {
             None
         }
         _ => refused(kind, field, value, expr.span, is_literal(expr)),
     }
+}
+
+/// Whether a field holds a direction: every plain vector of a thing is one.
+fn is_direction(ty: FieldType) -> bool {
+    matches!(ty, FieldType::Tuple(3, units::NONE))
 }
 
 /// Whether a value is the number that is written, and not computed.
@@ -75,6 +85,9 @@ fn refused(kind: KindId, field: &Field, value: &Value, span: Span, literal: bool
     if let Value::Texture(texture) = value {
         let parts = texture.parts.iter().flatten();
         return parts.into_iter().find_map(|part| refused(kind, field, &part.value, part.span, false));
+    }
+    if is_direction(field.ty) && matches!(value, Value::Number(0.0) | Value::Tuple(DVec3::ZERO)) {
+        return Some(no_direction(field, span));
     }
     let refused = |x: &f64| !field.range.contains(*x);
     let bad = match value {
@@ -277,12 +290,19 @@ pub(super) fn param_out_of_range(param: &Param, [low, high]: [f64; 2], value: f6
     };
     let [low, high, value] = [low, high, value].map(|x| show_quantity(x, dim));
     let message = format!("`{}` must be from {low} to {high}, this is {value}", param.name);
-    let diagnostic = Diagnostic::new(Code::E0401, message, span).at("out of range");
-    let diagnostic = diagnostic.label(param.span, "declared here");
-    match &param.doc {
-        Some(doc) => diagnostic.help(doc.to_string()),
-        None => diagnostic,
-    }
+    Diagnostic::new(Code::E0401, message, span).at("out of range").label(param.span, "declared here")
+}
+
+/// `in 20 to n`, where `n` is 1.
+pub(super) fn empty_range(param: &Param, [low, high]: [f64; 2], range: Span) -> Diagnostic {
+    let dim = match &param.declared {
+        Declared::Field(ty) => dimension(*ty),
+        _ => units::NONE,
+    };
+    let [low, high] = [low, high].map(|x| show_quantity(x, dim));
+    Diagnostic::new(Code::E0401, format!("nothing lies from {low} to {high}"), range)
+        .at("begins above its end")
+        .help("the lower end comes first")
 }
 
 /// What must hold does not.

@@ -2,7 +2,7 @@
 
 use super::list::Items;
 use super::{Evaluator, List, Value, errors};
-use crate::check::{Expr, ExprKind, Function};
+use crate::check::{Arithmetic, Expr, ExprKind, Function};
 use crate::color;
 use crate::math::DVec3;
 use crate::span::Span;
@@ -154,7 +154,7 @@ impl Evaluator<'_> {
                 let (left, right) = (self.number(left), self.number(right));
                 let (left, right) = (left?, right?);
                 let result = arithmetic(*operator, left, right);
-                if result.is_finite() && (!*int || result.abs() <= MAX_INT) {
+                if result.is_finite() && (!*int || result.abs() < MAX_INT) {
                     return Some(result);
                 }
                 self.beyond(*operator, [left, right], result, span)
@@ -166,11 +166,11 @@ impl Evaluator<'_> {
 
     /// Reports a result that is no number to go on with.
     #[cold]
-    fn beyond(&mut self, operator: BinaryOp, operands: [f64; 2], result: f64, span: Span) -> Option<f64> {
+    fn beyond(&mut self, operator: Arithmetic, operands: [f64; 2], result: f64, span: Span) -> Option<f64> {
         let [left, right] = operands.map(Value::Number);
         self.report(match result.is_finite() {
             true => errors::inexact(span),
-            false => errors::not_finite(operator, &left, &right, span),
+            false => errors::not_finite(operator.operator(), &left, &right, span),
         });
         None
     }
@@ -315,15 +315,13 @@ fn binary(operator: BinaryOp, left: &Value, right: &Value) -> Value {
     }
 }
 
-/// Of two numbers; not a number where the operator gives none.
 #[inline]
-fn arithmetic(operator: BinaryOp, a: f64, b: f64) -> f64 {
+fn arithmetic(operator: Arithmetic, a: f64, b: f64) -> f64 {
     match operator {
-        BinaryOp::Add => a + b,
-        BinaryOp::Subtract => a - b,
-        BinaryOp::Multiply => a * b,
-        BinaryOp::Divide => a / b,
-        _ => f64::NAN,
+        Arithmetic::Add => a + b,
+        Arithmetic::Subtract => a - b,
+        Arithmetic::Multiply => a * b,
+        Arithmetic::Divide => a / b,
     }
 }
 

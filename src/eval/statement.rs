@@ -166,6 +166,10 @@ impl Evaluator<'_> {
         let value = zero_of(&param.declared, value);
         let range = param.range.as_ref().map(|[low, high]| [self.expr(low), self.expr(high)]);
         let value = match (&value, range) {
+            (_, Some([Value::Number(low), Value::Number(high)])) if low > high => {
+                let range = param.range.as_ref().map_or(param.span, |[low, high]| low.span.to(high.span));
+                self.report(errors::empty_range(param, [low, high], range))
+            }
             (&Value::Number(x), Some([Value::Number(low), Value::Number(high)]))
                 if !(low..=high).contains(&x) =>
             {

@@ -2,7 +2,7 @@
 
 use super::Flat;
 use super::numbers::{at, matrix, number, preimage, rgb, triple};
-use super::view::far_along;
+use super::view::along;
 use crate::color::Rgb;
 use crate::math::{DMat3, DVec3, PI, atan2, cos, sin};
 use crate::scene::{Light, Panorama};
@@ -25,7 +25,7 @@ pub(super) fn lamp(flat: &Flat, light: &Light) -> Result<String, &'static str> {
             let angle = PI * (height(*inner) + height(*outer));
             let power = intensity.to_array().map(|i| preimage(i, i * angle, |power| power / angle));
             let soft = preimage(*inner, 1.0 - inner / outer, |soft| (1.0 - soft) * outer);
-            let aim = triple(far_along(*position, *direction));
+            let aim = triple(along(*position, *direction));
             let (at, color, cone) = (at(*position), rgb(Rgb::from_array(power)), number(2.0 * outer));
             let soft = number(soft.clamp(0.0, 1.0));
             format!("light {{ {at}power: 1W, color: {color}, aim: {aim}m, cone: {cone}rad, soft: {soft} }}")

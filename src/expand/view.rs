@@ -14,7 +14,7 @@ pub(super) fn camera(camera: &Camera, develop: &Develop) -> String {
         }
         Projection::Orthographic => format!("width: {}m", number(2.0 * half_width)),
     };
-    let look = far_along(camera.position, camera.forward);
+    let look = along(camera.position, camera.forward);
     let (from, look, up) = (triple(camera.position), triple(look), triple(camera.up));
     let exposure = develop.exposure.map_or("auto".to_string(), number);
     let mut fields = format!("from: {from}m, look: {look}m, up: {up}, {extent}, exposure: {exposure}");
@@ -25,8 +25,28 @@ pub(super) fn camera(camera: &Camera, develop: &Develop) -> String {
     format!("camera {{ {fields} }}")
 }
 
-/// A point whose difference to another, in rounded numbers, is a power of two times a direction.
-pub(super) fn far_along(from: DVec3, direction: DVec3) -> DVec3 {
+/// A point whose difference to another, in rounded numbers, is a power of two times a direction: as near as there is one
+/// from about the distance of the origin on.
+pub(super) fn along(from: DVec3, direction: DVec3) -> DVec3 {
+    let mut scale = 1.0;
+    while scale < from.length() && scale < 1e300 {
+        scale *= 2.0;
+    }
+    let reached = (0..NEAR).find_map(|_| {
+        let step = scale * direction;
+        scale *= 2.0;
+        let part = |i: usize| preimage(step[i], from[i] + step[i], |x| x - from[i]);
+        let look = DVec3::new(part(0), part(1), part(2));
+        (look - from == step).then_some(look)
+    });
+    reached.unwrap_or_else(|| far_along(from, direction))
+}
+
+/// How many distances are tried for a point to look at, each twice the one before.
+const NEAR: u32 = 12;
+
+/// The same, so far away that the place of the other is lost in rounding.
+fn far_along(from: DVec3, direction: DVec3) -> DVec3 {
     // So far that the least part of the direction still outweighs the whole of `from`.
     let parts = direction.abs().to_array().into_iter().filter(|part| *part > 0.0);
     let least = parts.fold(1.0, f64::min);
@@ -76,5 +96,16 @@ mod tests {
             let scale = if scale.is_finite() { scale } else { difference.x };
             assert_eq!(difference / scale, direction);
         }
+    }
+
+    #[test]
+    fn what_is_looked_at_is_near_where_it_can_be() {
+        let from = DVec3::new(0.0, 1.0, 4.0);
+        let direction = (DVec3::new(0.0, 0.5, 0.0) - from).normalize();
+        let look = along(from, direction);
+        assert!(look.length() < 1e4, "{look}");
+        let difference = look - from;
+        let scale = difference.z / direction.z;
+        assert_eq!(difference / scale, direction);
     }
 }

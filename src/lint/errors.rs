@@ -71,7 +71,7 @@ pub(super) fn no_inside(lint: &Lint, origin: OriginId) -> Diagnostic {
 }
 
 pub(super) fn focus_misses(lint: &Lint, nearest: Option<f64>) -> Diagnostic {
-    let focus = lint.scene.camera.focus;
+    let focus = lint.camera.focus;
     let message = format!("nothing in view is near the plane of focus, {} away", length(focus));
     let place = lint.marks.focus.or(lint.marks.camera).unwrap_or_else(start);
     let diagnostic = Diagnostic::new(Code::W0608, message, place).at("all is blurred");

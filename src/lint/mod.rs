@@ -19,7 +19,7 @@ mod view;
 use crate::diagnostic::{Code, Diagnostic, Use};
 use crate::eval::Origins;
 use crate::lower::Marks;
-use crate::scene::{Material, OriginId, Primitive, Scene};
+use crate::scene::{Camera, Material, OriginId, Primitive, Scene};
 use crate::span::Span;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -31,7 +31,8 @@ pub const MOST_PLACES: usize = 1000;
 
 /// Looks at a scene.
 pub fn lint(scene: &Scene, origins: &Origins, marks: &Marks) -> Vec<Diagnostic> {
-    let mut lint = Lint { scene, origins, marks, named: BTreeMap::new(), found: vec![] };
+    let camera = &scene.camera;
+    let mut lint = Lint { scene, camera, origins, marks, named: BTreeMap::new(), found: vec![] };
     view::look(&mut lint);
     lights::look(&mut lint);
     media::look(&mut lint);
@@ -40,9 +41,18 @@ pub fn lint(scene: &Scene, origins: &Origins, marks: &Marks) -> Vec<Diagnostic> 
     lint.found
 }
 
+/// Looks through a camera, which is that of the scene or another one of the source.
+pub fn look_through(scene: &Scene, camera: &Camera, origins: &Origins, marks: &Marks) -> Vec<Diagnostic> {
+    let mut lint = Lint { scene, camera, origins, marks, named: BTreeMap::new(), found: vec![] };
+    view::look(&mut lint);
+    lint.found
+}
+
 /// What the warnings look at, and what they have found.
 struct Lint<'a> {
     scene: &'a Scene,
+    /// Through which it is seen.
+    camera: &'a Camera,
     origins: &'a Origins,
     marks: &'a Marks,
     /// What was said, so that it is said once.

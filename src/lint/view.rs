@@ -22,7 +22,7 @@ pub(super) fn look(lint: &mut Lint) {
         }
         return;
     }
-    let camera = &lint.scene.camera;
+    let camera = lint.camera;
     if camera.lens_radius > 0.0 && !shapes().any(|shape| view.may_be_sharp(shape)) {
         let nearest = shapes()
             .filter(|shape| view.may_see(shape))
@@ -36,7 +36,7 @@ pub(super) fn look(lint: &mut Lint) {
 
 /// W0601: the camera stands in a solid that nothing gets through. Exact, by [`Shape::contains`].
 fn inside(lint: &mut Lint) {
-    let position = lint.scene.camera.position;
+    let position = lint.camera.position;
     let around = |primitive: &&Primitive| lint.is_opaque(primitive) && primitive.shape.contains(position);
     if let Some(solid) = lint.scene.primitives.iter().find(around) {
         let diagnostic = errors::camera_inside(lint, solid.origin);
@@ -65,7 +65,7 @@ struct View<'a> {
 
 impl<'a> View<'a> {
     fn new(lint: &'a Lint) -> Option<View<'a>> {
-        let camera = &lint.scene.camera;
+        let camera = lint.camera;
         let [width, height] = lint.scene.trace.size.map(f64::from);
         // A ray through the rim starts one lens radius aside, and leans by radius/focus more.
         let lean = camera.lens_radius / camera.focus;

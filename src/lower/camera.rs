@@ -1,6 +1,6 @@
 //! The camera: where it stands, what it looks at, and its lens.
 
-use super::{Blocks, Extent, Lowering, errors, shape::unit};
+use super::{Blocks, Extent, Lowering, Marks, errors, shape::unit};
 use crate::eval::{Aim, Fields, Focus, Made, ThingId};
 use crate::math::{DVec2, DVec3, atan2, sin, tan};
 use crate::scene::shape::Bounds;
@@ -18,12 +18,15 @@ const MARGIN: f64 = 1.08;
 const UPRIGHT: f64 = 2e-15;
 
 impl Lowering<'_> {
-    /// Reports what is wrong with the cameras that do not take the picture, where they are looked at.
+    /// Finds the cameras that do not take the picture, where they are looked at, and reports what is wrong with them.
     pub(super) fn other_cameras(&mut self, blocks: &Blocks, size: Option<[u32; 2]>) {
         let chosen = self.out.notes.len();
         for camera in &blocks.others {
             let other = Blocks { camera: Some(camera), others: vec![], ..*blocks };
-            self.camera(&other, size);
+            if let Some((camera, _)) = self.camera(&other, size) {
+                let marks = Marks { lights: vec![], ..self.out.marks.clone() };
+                self.out.others.push((camera, marks));
+            }
         }
         self.out.notes.truncate(chosen);
     }
@@ -42,8 +45,10 @@ impl Lowering<'_> {
         let lens = self.lens(made, blocks)?;
         let (projection, half_width) = match made.given(camera::WIDTH) {
             Some((_, width)) if lens.is_some() => {
-                let lens = blocks.lens.map(|lens| lens.made.span());
-                self.report(errors::lens_of_parallel(lens.unwrap_or(width), width));
+                // Of one inside the camera it was said where the two fields stand.
+                if let Some(lens) = blocks.lens {
+                    self.report(errors::lens_of_parallel(lens.made.span(), width));
+                }
                 return None;
             }
             Some((width, _)) => (Projection::Orthographic, 0.5 * width),

@@ -18,7 +18,8 @@ use crate::files::{Contents, Files};
 use crate::math::{DAffine3, PI, sin};
 use crate::scene::shape::{Bounds, Placed};
 use crate::scene::{
-    Develop, FrameId, Light, Material, MaterialId, OriginId, Primitive, Scene, Shape, Target, Tonemap, Trace,
+    Camera, Develop, FrameId, Light, Material, MaterialId, OriginId, Primitive, Scene, Shape, Target,
+    Tonemap, Trace,
 };
 use crate::schema::{self, Category, DEFAULT_SAMPLES, KindId, light, render, sun};
 use crate::source::Sources;
@@ -64,6 +65,8 @@ pub struct Lowered {
     pub places: Places,
     /// Where the rest of the scene stands.
     pub marks: Marks,
+    /// The cameras that do not take the picture, each with its places, where they are looked at.
+    pub others: Vec<(Camera, Marks)>,
     /// Where its pictures and meshes were read.
     pub contents: Contents,
 }

@@ -61,8 +61,23 @@ fn placed(name: &str) -> Option<Familiar> {
 
 fn shape(kind: &str, name: &str) -> Option<Familiar> {
     Some(match (kind, name) {
-        ("sphere" | "disk" | "cylinder" | "cone" | "paraboloid", "diameter") => {
+        ("sphere" | "disk" | "cylinder" | "cone" | "paraboloid", "r" | "rad") => {
+            renamed("radius", "the radius is called `radius`")
+        }
+        ("cylinder" | "cone" | "paraboloid", "h" | "length") => {
+            renamed("height", "`height` is along its axis")
+        }
+        ("sphere", "size") | ("sphere" | "disk" | "cylinder" | "cone" | "paraboloid", "d" | "diameter") => {
             rewritten("radius", "`radius` is half of the diameter")
+        }
+        ("box", "min" | "max" | "from" | "to" | "corner" | "corner1" | "corner2") => {
+            rewritten("size", "a box stands around `at` with its `size`: `at: (0, 1, 0)m, size: (2, 2, 2)m`")
+        }
+        ("cylinder" | "cone" | "paraboloid", "from" | "to" | "start" | "end" | "base" | "top" | "cap") => {
+            rewritten(
+                "height",
+                "it stands upright around `at` with its `height`, and `place` turns it: `place: turn(z: 30deg)`",
+            )
         }
         ("box", "width" | "height" | "depth" | "dimensions" | "extent" | "extents") => {
             rewritten("size", "`size` is width, height and depth together: `size: (1, 2, 3)m`")

@@ -195,7 +195,10 @@ impl<'t> Builder<'t> {
     pub(super) fn unread(&self) -> Entry {
         let mut words = self.text.split_ascii_whitespace();
         let _kind = words.next();
-        let name = words.next().filter(|word| word.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_'));
+        let name = words.next().filter(|word| {
+            let begins = word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+            begins && word.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
+        });
         let name = name.map(|word| {
             let start = word.as_ptr().addr() - self.text.as_ptr().addr();
             Name { text: SmolStr::new(word), span: self.at(start, start + word.len()) }
@@ -208,22 +211,39 @@ impl<'t> Builder<'t> {
         let (mut entries, mut deepest) = (vec![], 0);
         // Whether a complaint about the last entry, or about its value, explains what follows on its line.
         let (mut explained, mut explained_value) = (false, false);
+        // Whether it is a definition with `:` in place of `=`.
+        let mut signed = false;
         let mut muted = None;
+        // Where the fields begin of a value whose brace is missing: they belong to no body.
+        let mut headless: Option<usize> = None;
         // Where the last entry ends, if nothing of it was understood: more of the kind on its line is one slip.
         let mut lost = None;
         for pair in pairs {
             match pair.as_rule() {
                 Rule::semicolon => self.semicolon(&pair),
+                // `let r: length 5cm`: that `=` is missing was said.
+                Rule::extra if signed => entries.last_mut().into_iter().for_each(spoil),
                 Rule::crowded if explained => muted = Some(self.reported()),
+                Rule::crowded if self.headless(&pair, entries.last()) => {
+                    entries.last_mut().into_iter().for_each(spoil);
+                    headless = Some(pair.as_span().start());
+                }
                 Rule::crowded => self.crowded(&pair),
-                Rule::extra | Rule::decimal if explained || explained_value || self.unbraced.get() => {}
+                Rule::extra | Rule::decimal | Rule::listed
+                    if explained || explained_value || self.unbraced.get() => {}
+                Rule::listed => {
+                    self.listed(&pair, entries.last());
+                    entries.last_mut().into_iter().for_each(spoil);
+                }
                 Rule::decimal => {
                     if self.decimal(&pair) {
                         entries.last_mut().into_iter().for_each(spoil);
                     }
                 }
                 Rule::extra => {
-                    self.unexpected(&pair, errors::unexpected_extra);
+                    if !self.long_unit(&pair) {
+                        self.unexpected(&pair, errors::unexpected_extra);
+                    }
                     entries.last_mut().into_iter().for_each(spoil);
                 }
                 Rule::stray => self.stray(&pair),
@@ -235,6 +255,8 @@ impl<'t> Builder<'t> {
                     if !top && is_angled(&pair) {
                         self.foreign.set(self.foreign.get().or(Some(self.at(start, end))));
                     }
+                    signed = pair.as_rule() == Rule::definition
+                        && pair.clone().into_inner().nth(2).is_some_and(|sign| sign.as_str() == ":");
                     let (entry, depth) = self.entry(pair, top);
                     let nameless = matches!(entry, Entry::Broken(Broken { name: None, .. }));
                     let again = lost.is_some_and(|lost| !self.text[lost..start].contains('\n'));
@@ -245,7 +267,10 @@ impl<'t> Builder<'t> {
                     explained = matches!(entry, Entry::Broken(_));
                     explained_value = ends_invalid(&entry);
                     deepest = deepest.max(depth);
-                    entries.push(entry);
+                    let belongs = headless.is_none_or(|from| self.text[from..start].contains('\n'));
+                    if belongs || !matches!(entry, Entry::Field(_)) {
+                        entries.push(entry);
+                    }
                 }
             }
         }
@@ -407,6 +432,11 @@ impl<'t> Builder<'t> {
             return (Entry::Broken(Broken { name, span }), 0);
         };
         if let Some(name) = name.as_ref().filter(|name| is_reserved(&name.text)) {
+            // `while true { … }`
+            if let Some(habit) = errors::habit(&word.text, word.span) {
+                self.report(habit);
+                return (Entry::Broken(Broken { name: None, span }), 0);
+            }
             self.report(errors::reserved(&name.text, name.span));
         }
         self.checked(self.plain(StatementKind::Thing { name, construct }, span), depth, span)

@@ -44,7 +44,7 @@ pub(super) struct Cut<'t> {
     pub(super) comments: Vec<Comment>,
     /// What was wrong between the items and with their brackets.
     pub(super) sink: Sink,
-    /// Closers outside all brackets, in order.
+    /// Closers that close nothing, in order.
     pub(super) strays: Vec<Stray>,
 }
 
@@ -197,9 +197,12 @@ struct Cutter<'t> {
     foreign_comments: Vec<Span>,
 }
 
-/// Where a text begins behind the marks that tell its encoding. Programs that put theirs before another's leave several.
+/// Where a text begins behind the marks that tell its encoding. Programs that put theirs before another's leave several,
+/// and those that add lines leave white space between them.
 pub(super) fn after_marks(text: &str) -> usize {
-    text.len() - text.trim_start_matches('\u{feff}').len()
+    let is_mark = |c: char| c == '\u{feff}';
+    let begins = text.len() - text.trim_start_matches(|c: char| c.is_ascii_whitespace() || is_mark(c)).len();
+    text[..begins].rfind(is_mark).map_or(0, |last| last + '\u{feff}'.len_utf8())
 }
 
 impl<'t> Cutter<'t> {
@@ -272,7 +275,12 @@ impl<'t> Cutter<'t> {
         let byte = self.bytes[start];
         if self.levels.is_empty() && self.splits {
             match byte {
-                b',' if self.base.angled == 0 && !self.is_decimal_comma() && !self.message_follows() => {
+                b',' if self.base.angled == 0
+                    && !self.is_decimal_comma()
+                    && !self.precedes_number()
+                    && !self.message_follows()
+                    && !self.is_among_variables() =>
+                {
                     return self.comma();
                 }
                 b')' | b']' | b'}' => return self.stray_closer(),

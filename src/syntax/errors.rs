@@ -66,13 +66,25 @@ impl Sink {
         self.semicolons.truncate(held.semicolons);
     }
 
-    /// Adds a label to the one diagnostic that points into a place, if there is one.
-    pub(super) fn label(&mut self, within: Span, place: Span, text: &str) -> bool {
-        let found = self.told.iter_mut().find(|diagnostic| within.contains(diagnostic.primary.span));
-        let Some(diagnostic) = found else { return false };
-        *diagnostic =
-            std::mem::replace(diagnostic, Diagnostic::new(Code::E0001, "", place)).label(place, text);
-        true
+    /// The diagnostics that tell of a missing `{`, each with its place, in the order of the text.
+    pub(super) fn missing_braces(&self) -> Vec<(usize, Span)> {
+        let told = self.told.iter().enumerate();
+        let braces = told.filter(|(_, diagnostic)| statements::misses_brace(diagnostic));
+        let mut found: Vec<(usize, Span)> = braces.map(|(index, told)| (index, told.primary.span)).collect();
+        found.sort_by_key(|(_, place)| place.start);
+        found
+    }
+
+    /// Adds a label to a diagnostic.
+    pub(super) fn label(&mut self, index: usize, place: Span, text: &str) {
+        self.told[index] = self.told[index].clone().label(place, text);
+    }
+
+    /// Whether a place lies in values of which it was said that they have no parentheses.
+    pub(super) fn tells_of_components(&self, place: Span) -> bool {
+        self.told.iter().any(|diagnostic| {
+            diagnostic.message == BARE_COMPONENTS && diagnostic.primary.span.contains(place)
+        })
     }
 
     /// What was collected, in the order of the text, with each place where it was written.
@@ -142,6 +154,7 @@ pub(super) fn unexpected_extra(token: &str, span: Span) -> Diagnostic {
         "else" | "elif" | "elseif" | "elsif" => {
             diagnostic.help(format!("`{token}` belongs to an `if` before it: `if … {{ … }} else {{ … }}`"))
         }
+        "@" => diagnostic.help("a mark stands before what it is about: `@off sphere { … }`"),
         ":" => diagnostic.help("one `:` stands between a field's name and its value"),
         _ => diagnostic.help("end the entry with a comma or a new line, or put an operator between the two"),
     }
@@ -237,7 +250,7 @@ pub(super) fn reserved_value(word: &str, span: Span) -> Diagnostic {
 pub(super) fn missing_value(before: &str, span: Span) -> Diagnostic {
     let message = match before {
         "" => "a value is missing".to_string(),
-        before => format!("a value is missing after `{before}`"),
+        before => format!("a value is missing after {}", shown(before)),
     };
     Diagnostic::new(Code::E0001, message, span).at("a value belongs here")
 }
@@ -263,12 +276,12 @@ pub(super) fn missing_member(span: Span) -> Diagnostic {
         .help("name the part that is meant: `ball.radius`")
 }
 
-/// Two entries on a line.
-pub(super) fn crowded(word: &str, span: Span) -> Diagnostic {
+/// Two entries on a line; `edit` is what is between them.
+pub(super) fn crowded(word: &str, span: Span, edit: Span) -> Diagnostic {
     unexpected(word, span)
         .at("begins something new on the same line")
         .help("put a comma or a new line before it")
-        .fix(span.before(), ", ")
+        .fix(edit, ", ")
 }
 
 /// A name at the top level, and nothing more.
@@ -458,11 +471,11 @@ pub(super) fn angle_brackets(span: Span, open: Span, close: Span) -> Diagnostic 
         .fix(close, ")")
 }
 
-/// `a..b`. `edit` is what `to` takes the place of, the white space around the points included. How a range without
-/// its end would be written is not certain.
+/// `a..b`. `edit` is what `to` takes the place of, the white space around the points included. Languages differ in
+/// whether `..` and `...` include the end, so only `..=` is certain.
 pub(super) fn dots(dots: &str, span: Span, edit: Span) -> Diagnostic {
     let diagnostic = Diagnostic::new(Code::E0007, format!("a range is not written with `{dots}`"), span)
         .at("`to` is wanted")
-        .help("write `a to b`, which includes both ends");
-    if dots == "..<" { diagnostic } else { diagnostic.fix(edit, " to ") }
+        .help("write `a to b`, which includes both ends, or `range(a, b)`, which leaves out `b`");
+    if dots == "..=" { diagnostic.fix(edit, " to ") } else { diagnostic }
 }

@@ -14,6 +14,7 @@ mod docs;
 mod errors;
 mod format;
 mod items;
+mod literal;
 mod lookalikes;
 mod places;
 mod rows;
@@ -98,21 +99,57 @@ pub fn parse_rows(source: SourceId, text: &str, limits: Limits) -> (ast::File, V
         let built: Vec<_> = cut.items.par_chunks(CHUNK).map(|chunk| items::items(found, chunk)).collect();
         built.into_iter().for_each(collect);
     }
-    strays(&entries, &cut.strays, &mut sink);
+    headless(&mut entries, text, &mut sink);
+    strays(&cut.strays, &mut sink);
     let file = ast::File { source, body: ast::Body { entries, span }, comments: cut.comments };
     (file, sink.into_sorted(|place| read.whole(place, text)))
 }
 
+/// Reports definitions by the bare name of a kind with indented fields on the lines behind it: `{` is missing, and the
+/// fields belong to nothing.
+fn headless(entries: &mut Vec<ast::Entry>, text: &str, sink: &mut errors::Sink) {
+    let mut lost = false;
+    let mut at = 0usize;
+    for index in 0..entries.len() {
+        let (before, from) = entries.split_at_mut(index);
+        if let ast::Entry::Field(field) = &from[0] {
+            let indented = text[..field.name.span.range().start].ends_with(BLANKS);
+            let kept = at.checked_sub(1).filter(|_| indented);
+            lost = match kept.and_then(|last| slips::bare_name(&mut before[last])) {
+                Some((name, value)) => {
+                    sink.push(errors::no_brace(&name, value.span, field.name.span));
+                    value.kind = ast::ExprKind::Invalid;
+                    true
+                }
+                None => lost,
+            };
+        } else {
+            lost = false;
+        }
+        if !lost {
+            entries.swap(at, index);
+            at += 1;
+        }
+    }
+    entries.truncate(at);
+}
+
 /// Reports closers without an opener. Behind a thing whose `{` is missing, that is the slip.
-fn strays(entries: &[ast::Entry], strays: &[cut::Stray], sink: &mut errors::Sink) {
+fn strays(strays: &[cut::Stray], sink: &mut errors::Sink) {
+    let mut braces = sink.missing_braces();
     for stray in strays.iter().filter(|stray| !stray.forgiven) {
-        let place = stray.span.start;
-        let before = entries.partition_point(|entry| entry.start() < place);
-        let lost = entries[..before].iter().rev().find(|entry| !matches!(entry, ast::Entry::Field(_)));
-        let explained = match lost {
-            Some(ast::Entry::Broken(broken)) if stray.closer == '}' && broken.name.is_some() => {
-                sink.label(broken.span, stray.span, "closes what was not opened")
-            }
+        let explained = match stray.closer {
+            // It closes values whose opening parenthesis was missed.
+            ')' => sink.tells_of_components(stray.span),
+            // It closes the body whose brace was missed, the last one before it.
+            '}' => match braces.iter().rposition(|(_, place)| place.start < stray.span.start) {
+                Some(last) => {
+                    let (index, _) = braces.remove(last);
+                    sink.label(index, stray.span, "closes what was not opened");
+                    true
+                }
+                None => false,
+            },
             _ => false,
         };
         if !explained {

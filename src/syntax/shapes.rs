@@ -19,6 +19,9 @@ const MAX_SHAPES: usize = 256;
 /// The most digits of a number in an item with a shape: it is finite.
 const MAX_DIGITS: usize = 300;
 
+/// The most digits of a whole number in an item with a shape: it is exact.
+const MAX_WHOLE_DIGITS: usize = 15;
+
 /// The shapes that were seen.
 #[derive(Default)]
 pub(super) struct Shapes {
@@ -80,7 +83,8 @@ impl Shapes {
                     self.literals.push(Literal { start: start as u32, end: at as u32 });
                     let next = text.get(at).copied().unwrap_or(b' ');
                     // What may belong to the number, or be misread as if it did.
-                    if b"_.eExXbBoO".contains(&next) || at - start > MAX_DIGITS {
+                    let most = if point { MAX_DIGITS } else { MAX_WHOLE_DIGITS };
+                    if b"_.eExXbBoO".contains(&next) || at - start > most {
                         return false;
                     }
                     let unit = at;

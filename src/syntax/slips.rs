@@ -6,6 +6,7 @@ use super::ast::{Broken, Entry, Expr, ExprKind, Field, Name, StatementKind};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements};
 use super::value;
+use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 use pest::iterators::Pairs;
 
@@ -30,6 +31,14 @@ pub(super) fn ends_invalid(entry: &Entry) -> bool {
             StatementKind::Thing { .. } => false,
         },
     }
+}
+
+/// The value of a definition that is a name alone.
+pub(super) fn bare_name(entry: &mut Entry) -> Option<(smol_str::SmolStr, &mut Expr)> {
+    let Entry::Statement(statement) = entry else { return None };
+    let StatementKind::Definition { value, .. } = &mut statement.kind else { return None };
+    let ExprKind::Name(name) = &value.kind else { return None };
+    Some((name.clone(), value))
 }
 
 /// Makes the value invalid with which an entry ends, because more stands behind it: what it was to be is not known.
@@ -62,7 +71,9 @@ impl<'t> Builder<'t> {
         let name = self.name(word);
         let lost = |name| (Entry::Broken(Broken { name, span }), 0);
         let value = inner.next().expect("a field has a value");
-        if is_reserved(&name.text) && &name.text != "material" {
+        // `to:` is the name of a field elsewhere, and what it is called here depends on the kind.
+        let field = !top && matches!(name.text.as_str(), "material" | "to" | "in" | "as" | "part");
+        if is_reserved(&name.text) && !field {
             // The `else:` of an `if …:` was explained there.
             if !self.unbraced.get() || &name.text != "else" {
                 self.report(statements::begins_nothing(&name.text, name.span));
@@ -126,6 +137,40 @@ impl<'t> Builder<'t> {
         true
     }
 
+    /// `at: 0, 1, 0`, values without parentheses behind a field; behind anything else the first belongs to nothing.
+    pub(super) fn listed(&self, pair: &Node, before: Option<&Entry>) {
+        let all = self.trimmed(pair);
+        let value = match before {
+            Some(Entry::Field(field)) => Some(&field.value),
+            Some(Entry::Statement(statement)) => match &statement.kind {
+                StatementKind::Definition { value, .. } => Some(value),
+                _ => None,
+            },
+            _ => None,
+        };
+        match value {
+            Some(value) => self.report(errors::bare_components(Span { start: value.span.start, ..all })),
+            None => {
+                let rest = pair.as_str()[1..].trim_ascii_start();
+                let start = pair.as_span().end() - rest.len();
+                let token = errors::first_token(rest);
+                self.report(errors::unexpected_entry(token, self.at(start, start + token.len()), false));
+            }
+        }
+    }
+
+    /// `1 meter`: whether that is the slip.
+    pub(super) fn long_unit(&self, pair: &Node) -> bool {
+        let text = pair.as_str().trim_ascii_start();
+        let start = pair.as_span().end() - text.len();
+        let before = self.before(start).len();
+        let number = self.before(start).ends_with(|c: char| c.is_ascii_digit() || c == ')');
+        let word = errors::first_token(text);
+        let end = start + word.len();
+        let found = errors::long_unit(word, self.at(start, end), self.at(before, end)).filter(|_| number);
+        found.map(|diagnostic| self.report(diagnostic)).is_some()
+    }
+
     /// Whether what begins with a comma between digits goes on with another, or closes an angle bracket.
     fn holds_components(&self, pair: &Node) -> bool {
         let behind = pair.as_str()[1..].split(['(', '[', '{', '"', '\n']).next().unwrap_or("");
@@ -169,6 +214,14 @@ impl<'t> Builder<'t> {
     /// `let a 5`
     pub(super) fn undefined(&self, keyword: &Node, mut inner: Pairs<'t, Rule>, span: Span) -> Deep<Entry> {
         let name = self.name(&inner.next().expect("this slip has a name"));
+        let start = name.span.range().start - self.base();
+        let text = self.after(start);
+        let end = text.find(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '-'))).unwrap_or(text.len());
+        let whole = text[..end].trim_end_matches('-');
+        if whole.contains('-') && text[whole.len()..].trim_start_matches(BLANKS).starts_with('=') {
+            self.report(errors::no_name(keyword.as_str(), whole, self.at(start, start + whole.len())));
+            return (Entry::Broken(Broken { name: Some(name), span }), 0);
+        }
         let place = self.span(keyword).to(name.span);
         self.report(errors::missing_equals(keyword.as_str(), &name.text, place));
         (Entry::Broken(Broken { name: Some(name), span }), 0)
@@ -186,6 +239,10 @@ impl<'t> Builder<'t> {
         let value = inner.next().expect("this slip has a value");
         let value_span = self.at(value.as_span().start(), self.before(value.as_span().end()).len());
         let field = &name.text == "material" && !top;
+        if let Some(diagnostic) = self.no_name(&name.text, &value).filter(|_| !is_reserved(&name.text)) {
+            self.report(diagnostic);
+            return (Entry::Broken(Broken { name: None, span }), 0);
+        }
         if is_reserved(&name.text) && !field {
             self.report(statements::begins_nothing(&name.text, name.span));
         } else if !top && is_placement(&name.text) && value.as_str().starts_with('(') {
@@ -193,6 +250,10 @@ impl<'t> Builder<'t> {
         } else if let Some(color) = only(&value, Rule::angled_color).filter(|_| !top) {
             let (value, depth) = angled::color(self, color, Some(&name));
             return (Entry::Field(Field { name, value }), depth);
+        } else if !top && self.begins_field(&value) {
+            // `sphere radius: 1m }`
+            self.report(errors::no_brace(&name.text, name.span, value_span));
+            return (Entry::Broken(Broken { name: None, span }), 0);
         } else if !top {
             self.report(errors::missing_colon(&name.text, name.span, value_span));
             let (value, depth) = value::expression(self, value);
@@ -207,6 +268,24 @@ impl<'t> Builder<'t> {
             self.report(errors::no_brace(&name.text, name.span, value_span));
         }
         (Entry::Broken(Broken { name: Some(name), span }), 0)
+    }
+
+    /// `sphere 2nd { … }`, `sphere my-ball { … }`: what stands as the name of a thing and cannot be one.
+    fn no_name(&self, kind: &str, value: &Node) -> Option<Diagnostic> {
+        let start = value.as_span().start();
+        let text = self.after(start);
+        let end = text.find(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '-'))).unwrap_or(text.len());
+        let name = &text[..end];
+        let thing = text[end..].trim_start_matches(BLANKS).starts_with('{');
+        let apart = name.starts_with(|c: char| c.is_ascii_digit()) || name.contains('-');
+        let sound = apart && !name.starts_with('-') && !name.ends_with('-');
+        (thing && sound).then(|| errors::no_name(kind, name, self.at(start, start + end)))
+    }
+
+    /// Whether what was taken for a value is the name of a field, with `:` behind it.
+    fn begins_field(&self, value: &Node) -> bool {
+        is_word(value.as_str().trim_end())
+            && self.after(value.as_span().end()).trim_ascii_start().starts_with(':')
     }
 
     /// A statement as other languages have it. Gives what it declares.
@@ -242,13 +321,36 @@ impl<'t> Builder<'t> {
         self.sink.borrow_mut().push_semicolon(self.span(pair), replacement);
     }
 
+    /// `let ball = sphere radius: 1m`: whether the brace behind the kind is the slip.
+    pub(super) fn headless(&self, pair: &Node, before: Option<&Entry>) -> bool {
+        let value = match before {
+            Some(Entry::Field(field)) => &field.value,
+            Some(Entry::Statement(statement)) => match &statement.kind {
+                StatementKind::Definition { value, .. } => value,
+                _ => return false,
+            },
+            _ => return false,
+        };
+        let ExprKind::Name(kind) = &value.kind else { return false };
+        let rest = self.after(pair.as_span().start()).trim_ascii_start();
+        let word = errors::first_token(rest);
+        if !is_word(word) || !rest[word.len()..].trim_ascii_start().starts_with(':') || is_reserved(word) {
+            return false;
+        }
+        let start = self.base() + self.text_len() - rest.len();
+        let place = Span::new(value.span.source, start, start + word.len());
+        self.report(errors::no_brace(kind, value.span, place));
+        true
+    }
+
     pub(super) fn crowded(&self, pair: &Node) {
         let start = pair.as_span().start();
         let rest = self.after(start);
         let skipped = rest.len() - rest.trim_start_matches(BLANKS).len();
         let word = errors::first_token(&rest[skipped..]);
         let start = start + skipped;
-        self.report(errors::crowded(word, self.at(start, start + word.len())));
+        let edit = self.at(self.before(start).len(), start);
+        self.report(errors::crowded(word, self.at(start, start + word.len()), edit));
     }
 
     pub(super) fn stray(&self, pair: &Node) {

@@ -4,7 +4,7 @@
 use super::ast::{Body, Broken, Entry, Expr, ExprKind, Name, Parameter, StatementKind, TypeName};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements as slips};
-use super::value;
+use super::{literal, value};
 use crate::span::Span;
 use pest::iterators::Pairs;
 use smol_str::SmolStr;
@@ -29,6 +29,17 @@ pub(super) fn statement<'t>(builder: &Builder<'t>, pair: Node<'t>) -> Deep<Entry
     if rule == Rule::import && parts.peek().is_some_and(|path| path.as_rule() == Rule::bare_path) {
         return (unquoted(builder, parts, span), 0);
     }
+    if rule == Rule::function && parts.clone().any(|part| part.as_rule() == Rule::bare_parameters) {
+        return (unparenthesized(builder, parts, span), 0);
+    }
+    if rule == Rule::repetition && parts.clone().any(|part| part.as_rule() == Rule::more_variables) {
+        return (several_variables(builder, parts, span), 0);
+    }
+    if rule == Rule::repetition && parts.peek().is_some_and(|name| name.as_str() == "in") {
+        builder.report(slips::missing_variable(Span { end: span.start + 3, ..span }));
+        parts.filter(|part| part.as_rule() == Rule::body).for_each(|body| drop(builder.body(body)));
+        return (Entry::Broken(Broken { name: None, span }), 0);
+    }
     let (kind, depth) = match rule {
         Rule::param => param(builder, parts, span),
         Rule::part => part(builder, parts, span),
@@ -46,6 +57,25 @@ fn unfinished<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span)
     let word = parts.next().expect("an unfinished statement begins with its word");
     builder.report(slips::unfinished(word.as_str(), builder.span(&word)));
     // The body's own slips are still worth knowing.
+    parts.filter(|part| part.as_rule() == Rule::body).for_each(|body| drop(builder.body(body)));
+    Entry::Broken(Broken { name: None, span })
+}
+
+/// `fn f a: number -> number = 2 * a`: what it takes is not certain, so nothing is said of its uses.
+fn unparenthesized<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> Entry {
+    let name = declared(builder, parts.next());
+    if let Some(bare) = parts.next() {
+        builder.report(slips::bare_parameters(&name.text, builder.trimmed(&bare)));
+    }
+    Entry::Broken(Broken { name: Some(name), span })
+}
+
+/// `for i, j in list { … }`: what the other names are to be is not known, and so neither is the body.
+fn several_variables<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> Entry {
+    declared(builder, parts.next());
+    if let Some(more) = parts.next() {
+        builder.report(slips::several_variables(builder.trimmed(&more)));
+    }
     parts.filter(|part| part.as_rule() == Rule::body).for_each(|body| drop(builder.body(body)));
     Entry::Broken(Broken { name: None, span })
 }
@@ -133,7 +163,7 @@ fn part<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> De
 fn import<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> Deep<StatementKind> {
     let written = parts.next().expect("an import has a path");
     let place = builder.trimmed(&written);
-    let path = Name { text: value::text(builder, &written), span: place };
+    let path = Name { text: literal::text(builder, &written), span: place };
     let name = match (parts.next(), parts.next()) {
         (Some(_), Some(name)) => declared(builder, Some(name)),
         (given, _) => {
@@ -335,6 +365,14 @@ fn block<'t>(
             let start = before.as_span().start();
             return unbraced(builder, word, builder.at(start, start + 1), span);
         }
+        if known && is_kind(text) && parts.peek().is_some_and(|body| body.as_rule() == Rule::body) {
+            let start = before.as_span().end() - before.as_str().trim_ascii_start().len();
+            let kind = errors::first_token(text);
+            builder.report(slips::unbraced_thing(word, kind, builder.at(start, start + kind.len())));
+            // The slips in the body of the thing are still worth knowing.
+            parts.next().into_iter().for_each(|body| drop(builder.body(body)));
+            return (empty(span.after()), 0);
+        }
         if known {
             builder.unexpected(&before, slips::before_block);
         }
@@ -354,6 +392,16 @@ fn block<'t>(
             (empty(Span { end: span.end.max(place.start), ..place }.after()), 0)
         }
     }
+}
+
+/// Whether a text is that of a kind, and of a name behind it.
+fn is_kind(text: &str) -> bool {
+    let word = |word: &str| {
+        word.starts_with(|c: char| c.is_ascii_alphabetic())
+            && word.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'.'))
+            && !is_reserved(word)
+    };
+    text.split_ascii_whitespace().count() <= 2 && text.split_ascii_whitespace().all(word)
 }
 
 /// A body without braces, as in Python. What belongs to it is not known, nor to its `else`: that is one slip.

@@ -4,9 +4,10 @@ use super::angled;
 use super::ast::{Argument, BinaryOp, Expr, ExprKind, Name, Path, UnaryOp};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements};
+use super::literal::{color, literal, text, unit_name};
 use crate::span::Span;
 use pest::pratt_parser::{Assoc, Op, PrattParser};
-use smol_str::{SmolStr, SmolStrBuilder};
+use smol_str::SmolStr;
 use std::sync::LazyLock;
 
 /// The operators, the loosest first.
@@ -116,6 +117,16 @@ fn infix(builder: &Builder, left: Deep<Expr>, operator: &Node, right: Deep<Expr>
     {
         let function = if rule == Rule::foreign_power { "pow" } else { "mod" };
         let sign = operator.as_str();
+        if let (
+            ExprKind::Quantity { unit, .. } | ExprKind::Scaled { unit, .. },
+            ExprKind::Number { value, int: true },
+            Rule::foreign_power,
+        ) = (&left.kind, &right.kind, rule)
+        {
+            let edit = Span { start: left.span.end, end: right.span.start, ..at };
+            builder.report(errors::power_of_unit(sign, &unit.text, *value, at, edit));
+            return invalid(span);
+        }
         builder.report(errors::operator_for_function(sign, function, at, left.span, right.span));
         return invalid(span);
     }
@@ -398,86 +409,4 @@ fn scaled(builder: &Builder, value: Expr, depth: usize, unit: Option<Name>, span
     let Some(unit) = unit else { return (value, depth) };
     let kind = ExprKind::Scaled { value: Box::new(value), unit };
     checked(builder, Expr { kind, span }, depth + 1, span)
-}
-
-// --- Literals -----------------------------------------------------------------------------------------------
-
-fn literal(builder: &Builder, pair: Node) -> ExprKind {
-    let (all, span) = (pair.as_str(), builder.span(&pair));
-    let mut inner = pair.into_inner();
-    let number = inner.next().expect("a literal begins with a number").as_str();
-    let unit = inner.next();
-    if unit.as_ref().is_some_and(|unit| is_misread(number, unit.as_str())) {
-        builder.report(errors::bad_number(all, span));
-        return ExprKind::Invalid;
-    }
-    let value = if number.contains('_') { number.replace('_', "").parse() } else { number.parse() };
-    let value: f64 = value.unwrap_or(f64::INFINITY);
-    if !value.is_finite() {
-        builder.report(errors::huge_number(number, span));
-        return ExprKind::Invalid;
-    }
-    match unit {
-        Some(unit) => ExprKind::Quantity { value, unit: unit_name(builder, unit) },
-        None => ExprKind::Number { value, int: number.bytes().all(|b| b.is_ascii_digit() || b == b'_') },
-    }
-}
-
-/// Whether what looks like a unit is rather the rest of a number: `0x10`.
-fn is_misread(number: &str, unit: &str) -> bool {
-    let hexadecimal = |rest: &str| rest.bytes().all(|b| b.is_ascii_hexdigit());
-    let digits = |rest: &str| rest.bytes().all(|b| b.is_ascii_digit());
-    number == "0"
-        && (unit.strip_prefix(['x', 'X']).is_some_and(hexadecimal)
-            || unit.strip_prefix(['b', 'o', 'B', 'O']).is_some_and(digits))
-}
-
-/// A unit, or the slip of a space before it.
-fn unit_name(builder: &Builder, pair: Node) -> Name {
-    if pair.as_rule() != Rule::spaced_unit {
-        return builder.name(&pair);
-    }
-    let start = builder.span(&pair);
-    let unit = builder.name(&pair.into_inner().next().expect("behind the space stands a unit"));
-    builder.report(errors::space_before_unit(&unit.text, unit.span, Span { end: unit.span.start, ..start }));
-    unit
-}
-
-fn color(builder: &Builder, text: &str, span: Span) -> ExprKind {
-    let digits = &text[1..];
-    if matches!(digits.len(), 3 | 6) && digits.bytes().all(|b| b.is_ascii_hexdigit()) {
-        return ExprKind::Color(SmolStr::new(digits));
-    }
-    builder.report(errors::bad_color(text, span));
-    ExprKind::Invalid
-}
-
-/// The text between the quotes, its escapes resolved. An unknown one is reported and stands for itself.
-pub(super) fn text(builder: &Builder, pair: &Node) -> SmolStr {
-    let quoted = pair.as_str();
-    let inside = &quoted[1..quoted.len() - 1];
-    if !inside.contains('\\') {
-        return SmolStr::new(inside);
-    }
-    let mut resolved = SmolStrBuilder::new();
-    let mut characters = inside.char_indices();
-    while let Some((index, character)) = characters.next() {
-        if character != '\\' {
-            resolved.push(character);
-            continue;
-        }
-        match characters.next() {
-            Some((_, same @ ('"' | '\\'))) => resolved.push(same),
-            Some((_, 'n')) => resolved.push('\n'),
-            Some((_, 't')) => resolved.push('\t'),
-            Some((_, unknown)) => {
-                let start = pair.as_span().start() + 1 + index;
-                let end = start + 1 + unknown.len_utf8();
-                builder.report(errors::bad_escape(&format!("\\{unknown}"), builder.at(start, end)));
-                resolved.push(unknown);
-            }
-            None => {}
-        }
-    }
-    resolved.finish()
 }

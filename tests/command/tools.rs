@@ -190,6 +190,14 @@ fn one_of_several_cameras_is_chosen_where_one_is_wanted() {
     let check = desk.run("check --message-format short wrong.rt");
     assert_eq!(check.code, Some(1));
     assert!(check.stderr.contains("E0404"), "{}", check.stderr);
+    // What each of them sees is looked at as well.
+    desk.put(
+        "behind.rt",
+        "sphere { radius: 1m }\ncamera a { from: (0, 0, 9)m }\ncamera b { from: (0, 0, 9)m, look: (0, 0, 20)m }\n",
+    );
+    let check = desk.run("check --message-format short behind.rt");
+    assert_eq!(check.code, Some(0));
+    assert_eq!(check.stderr.matches("W0602").count(), 1, "{}", check.stderr);
 }
 
 #[test]

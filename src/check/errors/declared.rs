@@ -47,9 +47,22 @@ pub(in crate::check) fn range_of_what(span: Span, what: &str) -> Diagnostic {
         .help("remove it, or say with `assert` what must hold")
 }
 
-/// A literal outside a range of literals.
-pub(in crate::check) fn outside_range(name: &str, range: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0401, format!("`{name}` must lie in {range}"), span).at("out of range")
+/// A literal outside a range of literals, each as it is written.
+pub(in crate::check) fn outside_range(
+    name: &str,
+    [low, high]: [&str; 2],
+    value: &str,
+    span: Span,
+) -> Diagnostic {
+    let message = format!("`{name}` must be from {low} to {high}, this is {value}");
+    Diagnostic::new(Code::E0401, message, span).at("out of range")
+}
+
+/// `in 20 to 1`
+pub(in crate::check) fn empty_range(span: Span, low: &str, high: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0401, "nothing lies in this range", span)
+        .at("begins above its end")
+        .help(format!("the lower end comes first: `{high} to {low}`"))
 }
 
 pub(in crate::check) fn unknown_prefix(name: &Name) -> Diagnostic {

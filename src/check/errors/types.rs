@@ -65,6 +65,10 @@ pub(in crate::check) fn mismatch(
                 ))
             }
             (FieldType::Made(_), _) => diagnostic.help("such as `diffuse { color: #d94f30 }`"),
+            (FieldType::Part(kind), Type::Scalar(element)) if kind == "lens" && element.dim() == units::LENGTH => {
+                diagnostic.help(format!("a lens has its fields in braces: `lens {{ focal: {text}, stop: 2.8 }}`"))
+            }
+            (FieldType::Part(kind), _) => diagnostic.help(format!("its fields stand in braces: `{kind} {{ … }}`")),
             (FieldType::Transform, _) => {
                 diagnostic.help("such as `scale(2) |> turn(z: 10deg) |> move(0, 1m, 0)`")
             }
@@ -122,8 +126,7 @@ fn unit_code(wanted: Dim, found: Element) -> Code {
 fn with_unit(diagnostic: Diagnostic, text: &str, unit: Option<String>) -> Diagnostic {
     let Some(unit) = unit else { return diagnostic };
     let text = if text.is_empty() || text.len() > 40 || text.contains(['\n', '<']) { "(…)" } else { text };
-    let bare = text.starts_with('(') || text.bytes().all(|b| b.is_ascii_digit() || b == b'.');
-    let shown = if bare { text.to_string() } else { format!("({text})") };
+    let shown = if is_bare(text) { text.to_string() } else { format!("({text})") };
     let help = match unit.as_str() {
         "m" => format!("write `{shown}m`, `{shown}cm` or `{shown}mm`"),
         unit => format!("write `{shown}{unit}`"),
@@ -206,21 +209,31 @@ pub(in crate::check) fn unit_on_quantity(unit: &Name, value: Span, ty: &Type) ->
 }
 
 pub(in crate::check) fn no_member(member: &Name, ty: &Type) -> Diagnostic {
-    let help = match ty {
-        Type::Tuple(2, _) => "it has `.x` and `.y`",
-        Type::Bounds => "it has `.min`, `.max`, `.center` and `.size`",
-        Type::Invalid => "",
-        Type::Tuple(..) => "it has `.x`, `.y` and `.z`",
-        _ => "a triple has `.x`, `.y` and `.z`",
-    };
-    Diagnostic::new(Code::E0101, format!("no member `{}` in {}", member.text, ty.describe()), member.span)
-        .at("unknown member")
-        .help(help)
+    let message = format!("no member `{}` in {}", member.text, ty.describe());
+    let diagnostic = Diagnostic::new(Code::E0101, message, member.span).at("unknown member");
+    match ty {
+        Type::Tuple(2, _) => diagnostic.help("it has `.x` and `.y`"),
+        Type::Bounds => diagnostic.help("it has `.min`, `.max`, `.center` and `.size`"),
+        Type::Tuple(..) => diagnostic.help("it has `.x`, `.y` and `.z`"),
+        Type::List(_) => diagnostic.help("its items are `list[0]` and so on, and `length(list)` is how many"),
+        Type::Color | Type::Texture => {
+            diagnostic.help("a colour is a value as a whole; `mix(a, b, t)` lies between two")
+        }
+        Type::Scalar(_) => diagnostic.help("it is one value; a triple has `.x`, `.y` and `.z`"),
+        _ => diagnostic.help("a triple has `.x`, `.y` and `.z`, and a thing has its fields"),
+    }
 }
 
 pub(in crate::check) fn operand(symbol: &str, wanted: &str, span: Span, ty: &Type) -> Diagnostic {
-    Diagnostic::new(Code::E0201, format!("`{symbol}` wants {wanted}, this is {}", ty.describe()), span)
-        .at(ty.describe())
+    let message = format!("`{symbol}` wants {wanted}, this is {}", ty.describe());
+    let diagnostic = Diagnostic::new(Code::E0201, message, span).at(ty.describe());
+    match symbol {
+        "|>" => diagnostic.help("it joins placements: `scale(2) |> turn(z: 10deg) |> move(0, 1m, 0)`"),
+        "if" | "and" | "or" | "not" | "assert" if matches!(ty, Type::Scalar(_)) => {
+            diagnostic.help("ask something of it, such as `x > 0`")
+        }
+        _ => diagnostic,
+    }
 }
 
 pub(in crate::check) fn operands(symbol: &str, at: Span, [a, b]: [(Span, &Type); 2]) -> Diagnostic {
@@ -308,8 +321,49 @@ pub(in crate::check) fn argument(
         Code::E0203 if wanted == units::NONE => {
             diagnostic.help("divide by a unit to make it a plain number: `x / 1m`")
         }
+        _ => diagnostic.help(format!("call it as `{}`", function.signature())),
+    }
+}
+
+/// Several arguments that are wrong in the same way, each with its text. The first is where the error is.
+pub(in crate::check) fn arguments(
+    function: Function,
+    wanted: Dim,
+    places: &[(Span, &str)],
+    ty: &Type,
+) -> Diagnostic {
+    let Some(((span, text), others)) = places.split_first() else {
+        unreachable!("what is reported is at least one argument")
+    };
+    let diagnostic = argument(function, wanted, *span, text, ty);
+    if others.is_empty() {
+        return diagnostic;
+    }
+    let diagnostic =
+        others.iter().fold(diagnostic, |diagnostic, (span, _)| diagnostic.label(*span, "so is this"));
+    match diagnostic.code {
+        Code::E0202 | Code::E0204 => {
+            let unit = wanted.example_unit();
+            let with_unit = |(_, text): &(Span, &str)| match is_bare(text) {
+                true => format!("`{text}{unit}`"),
+                false => format!("`({text}){unit}`"),
+            };
+            let short = places.iter().all(|(_, text)| text.len() <= 20 && !text.contains('\n'));
+            match short {
+                true => diagnostic.help(format!(
+                    "each has its unit: {}",
+                    list(places.iter().map(with_unit).collect(), "and")
+                )),
+                false => diagnostic.help(format!("each has its unit, such as `1{unit}`")),
+            }
+        }
         _ => diagnostic,
     }
+}
+
+/// Whether a text is a number or a triple, which a unit can touch.
+fn is_bare(text: &str) -> bool {
+    text.starts_with('(') || text.bytes().all(|b| b.is_ascii_digit() || b == b'.')
 }
 
 pub(in crate::check) fn triple_wanted(

@@ -4,6 +4,7 @@ use super::{closest, quoted, unknown, unknown_name};
 use crate::color;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::schema::{self, Category, FieldType, familiar};
+use crate::span::Span;
 use crate::syntax::ast::Name;
 
 /// An unknown name as a value. `setting` is whether it stands in a `--set`.
@@ -39,6 +40,30 @@ pub(in crate::check) fn unknown_value(
 
 fn is_material(kind: &str) -> bool {
     schema::kind(kind).is_some_and(|kind| kind.get().category == Category::Material)
+}
+
+/// An unknown name is declared inside a body that this one is not in.
+pub(in crate::check) fn declared_inside(diagnostic: &mut Diagnostic, name: &str, declared: Span) {
+    let place = diagnostic.primary.span;
+    let message = format!("`{name}` is not visible here");
+    *diagnostic = Diagnostic::new(diagnostic.code, message, place)
+        .at("outside of the body that declares it")
+        .label(declared, "known only inside")
+        .help("a name is known inside the braces that declare it: declare it outside of them");
+}
+
+/// The name of a camera that there is not.
+pub(in crate::check) fn unknown_camera(name: &Name, cameras: &[&str]) -> Diagnostic {
+    let diagnostic = Diagnostic::new(Code::E0101, format!("no camera is called `{}`", name.text), name.span)
+        .at("not known here");
+    match closest(&name.text, cameras) {
+        Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
+        None if cameras.is_empty() => {
+            diagnostic.help(format!("give the camera that name: `camera {} {{ … }}`", name.text))
+        }
+        None if cameras.len() == 1 => diagnostic.help(format!("there is {}", quoted(cameras))),
+        None => diagnostic.help(format!("there are {}", quoted(cameras))),
+    }
 }
 
 /// An unknown name in a `--set`, which declares nothing.

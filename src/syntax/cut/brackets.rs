@@ -61,7 +61,11 @@ impl Cutter<'_> {
                 self.pop(1);
             }
             _ => {
-                self.out.sink.push(errors::stray_closer(place, char::from(closer)));
+                let closer = char::from(closer);
+                match self.splits {
+                    true => self.out.strays.push(Stray { span: place, closer, forgiven: false }),
+                    false => self.out.sink.push(errors::stray_closer(place, closer)),
+                }
                 self.edits.push((self.at..self.at + 1, b' '));
             }
         }
@@ -76,7 +80,7 @@ impl Cutter<'_> {
 
     /// Closes the brackets above the level `keep`, which `at` shows to be unclosed: in the white space before
     /// this token where there is enough of it, else by blotting them.
-    fn close_above(&mut self, keep: usize, seen: Option<Span>) {
+    pub(super) fn close_above(&mut self, keep: usize, seen: Option<Span>) {
         self.report_unclosed(keep, seen);
         let closers: Vec<u8> =
             self.levels[keep..].iter().rev().map(|level| closer_of(level.bracket)).collect();

@@ -1,7 +1,10 @@
 //! What other languages begin comments and directives with, and the decimal comma.
 
-use super::super::errors;
+use super::super::{BLANKS, errors};
 use super::{Cutter, Last, is_word};
+
+/// The longest list of variables of a loop, in bytes, that is looked at: the time stays in proportion to the text.
+const MAX_HEAD: usize = 200;
 
 /// The words that POV-Ray has before the parts of a colour in angle brackets.
 ///
@@ -22,6 +25,26 @@ impl Cutter<'_> {
     pub(super) fn is_decimal_comma(&self) -> bool {
         let digit = |at: usize| self.byte(at).is_ascii_digit();
         self.at > 0 && digit(self.at - 1) && digit(self.at + 1)
+    }
+
+    /// Whether a number follows a comma at the top level, which begins nothing there: `let p = 0, 1, 0`.
+    pub(super) fn precedes_number(&self) -> bool {
+        let rest = self.text[self.at + 1..].trim_start_matches(BLANKS);
+        let rest = rest.strip_prefix('-').unwrap_or(rest);
+        self.item.is_some() && rest.starts_with(|c: char| c.is_ascii_digit())
+    }
+
+    /// Whether a comma at the top level stands between the variables of a loop: `for i, j in list`.
+    pub(super) fn is_among_variables(&self) -> bool {
+        let Some(head) = self.item.and_then(|start| self.text[start..self.at].strip_prefix("for")) else {
+            return false;
+        };
+        let mut words = head.split(',');
+        let names = words.by_ref().all(|word| {
+            let word = word.trim_ascii();
+            !word.is_empty() && word.bytes().all(is_word)
+        });
+        head.starts_with(BLANKS) && head.len() < MAX_HEAD && names
     }
 
     /// `# a comment`, `-- a comment`, `#include`: what begins so is no value. A colour has its digits at once, and

@@ -67,6 +67,12 @@ impl<'t> Cutter<'t> {
         if self.layout && !self.levels.is_empty() && self.indent == 0 && self.begins_item() {
             return self.close_all(Some(self.word_span()));
         }
+        if self.shows_unclosed_choice() {
+            self.edits.push((gap.start..gap.end, b' '));
+            let seen = self.word_span();
+            self.last = Last::Operand;
+            return self.close_above(self.levels.len() - 1, Some(seen));
+        }
         let end = self.end;
         let level = self.level();
         level.spread |= level.at + 1 == end;
@@ -188,6 +194,15 @@ impl<'t> Cutter<'t> {
             Some((_, after)) => self.begins_statement() || opens(after),
             None => self.begins_statement() || (opens(next) && !matches!(word, "and" | "or" | "else")),
         }
+    }
+
+    /// Whether the line goes on with the other choice of an `if` whose body is still open.
+    fn shows_unclosed_choice(&self) -> bool {
+        let open = self.levels.last().filter(|level| level.bracket == b'{' && level.indent == self.indent);
+        let chooses = self.layout && matches!(self.word(self.at), "else" | "elif" | "elseif" | "elsif");
+        let Some(level) = open.filter(|_| chooses) else { return false };
+        let line = self.text[..level.at].rsplit('\n').next().unwrap_or("").trim_ascii_start();
+        line.starts_with("if ") || line.starts_with("else ") || line.starts_with("} else ")
     }
 
     /// Whether the line begins what can stand in a body and not in the parentheses around it.

@@ -97,6 +97,13 @@ fn text_ends_on_its_line() {
 }
 
 #[test]
+fn marks_of_the_encoding_are_overlooked_behind_white_space_too() {
+    assert_eq!(items("\u{feff}\u{feff}a {}"), ["a {}"]);
+    assert_eq!(items("\r\n\u{feff}\n a {}"), ["a {}"]);
+    assert_eq!(items("a {}\n\u{feff}b {}").len(), 2);
+}
+
+#[test]
 fn limits_skip_one_item() {
     let text = format!("let a = {}1{}\nb {{}}", "(".repeat(600), ")".repeat(600));
     let cut = cut(SourceId(0), &text, 512);

@@ -49,6 +49,9 @@ fn written(kind: &str) -> &'static str {
         "cylinder" | "cone" => "`cylinder { at: (0, 1, 0)m, radius: 50cm, height: 2m }`",
         "disc" | "disk" => "`disk { at: (0, 1, 0)m, normal: (0, 1, 0), radius: 50cm }`",
         "camera" => "`camera { from: (0, 1, 4)m, look: (0, 0, 0)m }`",
+        "pigment" | "texture" | "finish" | "material" | "color" | "interior" => {
+            "`material: diffuse { color: rgb(1, 0.5, 0) }`"
+        }
         "light" | "light_source" => "`light { at: (2, 4, 3)m, power: 60W, color: white }`",
         _ => "`sphere { at: (0, 1, 0)m, radius: 2m }`",
     }
@@ -60,6 +63,20 @@ pub(in crate::syntax) fn foreign_body(kind: &str, span: Span, angled: Span) -> D
         .at("its fields have names, each with `:` behind it")
         .label(angled, "and no value stands in `<…>`")
         .help(format!("write {}", written(kind)))
+}
+
+/// `sphere 2nd { … }`, `sphere my-ball { … }`
+pub(in crate::syntax) fn no_name(kind: &str, name: &str, span: Span) -> Diagnostic {
+    let diagnostic = Diagnostic::new(Code::E0001, format!("`{name}` cannot be a name"), span);
+    if name.starts_with(|c: char| c.is_ascii_digit()) {
+        let better = format!("{kind}_{}", name.replace('-', "_"));
+        return diagnostic
+            .at("begins with a digit")
+            .help(format!("a name begins with a letter: `{better}`"))
+            .fix(span, better);
+    }
+    let better = name.replace('-', "_");
+    diagnostic.at("`-` subtracts").help(format!("join the words by `_`: `{better}`")).fix(span, better)
 }
 
 /// `sphere: { radius: 1m }`, `sphere = { radius: 1m }`
@@ -97,9 +114,12 @@ pub(in crate::syntax) fn angled_color(
     }
 }
 
+/// What is said of values without parentheses.
+pub(super) const BARE_COMPONENTS: &str = "several values stand here without parentheses";
+
 /// `at: 0,1,0`
 pub(in crate::syntax) fn bare_components(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0001, "several values stand here without parentheses", span)
+    Diagnostic::new(Code::E0001, BARE_COMPONENTS, span)
         .at("more than one value")
         .help("write `(x, y, z)`, with the unit behind it: `(0, 1, 0)m`")
 }
@@ -161,6 +181,42 @@ pub(in crate::syntax) fn operator_for_function(
         .fix(left.before(), format!("{function}("))
         .fix(between, ", ")
         .fix(right.after(), ")")
+}
+
+/// `10W/m^2`
+pub(in crate::syntax) fn power_of_unit(
+    sign: &str,
+    unit: &str,
+    power: f64,
+    span: Span,
+    edit: Span,
+) -> Diagnostic {
+    unexpected(sign, span)
+        .at("the power of a unit touches it")
+        .help(format!("write `{unit}{power}`"))
+        .fix(edit, "")
+}
+
+/// `1 meter`: a unit is not written out. `place` is from behind the number.
+pub(in crate::syntax) fn long_unit(word: &str, span: Span, place: Span) -> Option<Diagnostic> {
+    const LONG: &[(&str, &[&str])] = &[
+        ("m", &["meter", "meters", "metre", "metres"]),
+        ("cm", &["centimeter", "centimeters", "centimetre", "centimetres"]),
+        ("mm", &["millimeter", "millimeters", "millimetre", "millimetres"]),
+        ("km", &["kilometer", "kilometers", "kilometre", "kilometres"]),
+        ("in", &["inch", "inches"]),
+        ("ft", &["foot", "feet"]),
+        ("deg", &["degree", "degrees"]),
+        ("rad", &["radian", "radians"]),
+        ("turn", &["turns"]),
+        ("W", &["watt", "watts", "Watt", "Watts"]),
+        ("K", &["kelvin", "kelvins", "Kelvin"]),
+        ("%", &["percent"]),
+    ];
+    let (unit, _) = LONG.iter().find(|(_, words)| words.contains(&word))?;
+    let diagnostic =
+        Diagnostic::new(Code::E0101, format!("unknown unit `{word}`"), span).at("not known here");
+    Some(diagnostic.help(format!("write `{unit}`, which touches its number: `1{unit}`")).fix(place, *unit))
 }
 
 /// `[for i in list { … }]`, `[2 * i for i in list]`

@@ -36,9 +36,20 @@ pub(in crate::syntax) fn huge_number(text: &str, span: Span) -> Diagnostic {
         .help("write a smaller number")
 }
 
+/// `9007199254740993`
+pub(in crate::syntax) fn inexact_number(text: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0008, format!("`{text}` is too large a whole number"), span)
+        .at("not exact")
+        .help("whole numbers are below 2^53 = 9007199254740992; with a decimal point it is a number that is rounded")
+}
+
 /// `"\q"`
 pub(in crate::syntax) fn bad_escape(escape: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0008, format!("`{escape}` means nothing in a text"), span)
+    let message = match escape.chars().any(char::is_control) {
+        true => "a control character cannot be escaped in a text".to_string(),
+        false => format!("`{escape}` means nothing in a text"),
+    };
+    Diagnostic::new(Code::E0008, message, span)
         .at("unknown escape")
         .help("write `\\\\` for a backslash; besides there are `\\\"`, `\\n` and `\\t`")
 }

@@ -77,6 +77,15 @@ pub(in crate::syntax) fn missing_block(word: &str, place: Span) -> Diagnostic {
     missing(&format!("the body of this `{word}` is missing"), place, word).at("`{ … }` belongs here")
 }
 
+/// Whether it tells of a `{` that is missing, so that its `}` closes nothing.
+pub(in crate::syntax) fn misses_brace(diagnostic: &Diagnostic) -> bool {
+    let message = &diagnostic.message;
+    diagnostic.code == Code::E0001
+        && (message.starts_with("`{` is missing")
+            || message.starts_with("the body of this")
+            || message.ends_with("has no body"))
+}
+
 /// `part stool = group { … }`
 pub(in crate::syntax) fn part_is_no_value(name: &str, sign: Span) -> Diagnostic {
     unexpected("=", sign)
@@ -172,6 +181,34 @@ pub(in crate::syntax) fn missing_import_name(place: Span) -> Diagnostic {
 /// `fn f = 5`
 pub(in crate::syntax) fn missing_parameters(place: Span) -> Diagnostic {
     missing("the parameters are missing", place, "fn").at("`(…)` belongs here, also where there are none")
+}
+
+/// `fn f a: number -> number = a`
+pub(in crate::syntax) fn bare_parameters(name: &str, span: Span) -> Diagnostic {
+    missing(&format!("the parameters of `{name}` have no parentheses"), span, "fn")
+        .at("`(…)` belongs around these")
+}
+
+/// `for in list { … }`
+pub(in crate::syntax) fn missing_variable(span: Span) -> Diagnostic {
+    missing("a name is missing after `for`", span, "for").at("what is each of them called?")
+}
+
+/// `for i, j in list { … }`
+pub(in crate::syntax) fn several_variables(span: Span) -> Diagnostic {
+    unexpected(",", Span { end: span.start + 1, ..span })
+        .at("a loop has one variable")
+        .help("put one loop into another: `for i in range(3) { for j in range(4) { … } }`")
+}
+
+/// `if c sphere { … }`
+pub(in crate::syntax) fn unbraced_thing(word: &str, kind: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("`{{` is missing before `{kind}`"), span)
+        .at(format!("the body of this `{word}` belongs here"))
+        .help(match word {
+            "for" => format!("put it into braces of its own: `for … in … {{ {kind} {{ … }} }}`"),
+            _ => format!("put it into braces of its own: `{word} … {{ {kind} {{ … }} }}`"),
+        })
 }
 
 /// `a: number = 3` among parameters.
