@@ -235,6 +235,9 @@ await check("params are set and written back", {}, async ({ url }, scene) => {
   await page.keyboard.press("Enter");
   await newer(page, last);
   await page.locator(".param.is-set").waitFor();
+  await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
+  await page.click("#copy-set");
+  await until("the flags are copied", async () => (await page.evaluate(() => navigator.clipboard.readText())) === "--set 'size=75cm'", 5000);
   await keep(page, "params");
   await page.getByRole("button", { name: "Write" }).click();
   await until("the file says so", () => load(scene, "utf8").includes("param size: length = 75cm in 10cm to 1m"), 5000);

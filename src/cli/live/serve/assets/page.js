@@ -29,6 +29,7 @@ const inspector = new Inspector({
   mark: (pixel) => {
     view.mark = pixel;
     view.draw();
+    showUnder(view, pixel ?? state.under);
   },
 });
 const link = new Link({
