@@ -85,6 +85,9 @@ codes! {
     W0701 "noise target not reached",
     W0702 "energy cut by the path depth",
     W0703 "over-exposed picture",
+    W0704 "one cause of much of the noise",
+    W0705 "light that gives nothing",
+    W0706 "thing that no path meets",
 }
 
 impl Code {

@@ -10,6 +10,7 @@
 //! | `file:NAME` | a file beside the scene, of both where neither is said; the scene itself is `scene.rt` |
 //! | `set:NAME=EXPR` | is given to the command as `--set` |
 //! | `build` | shows only once the picture is made |
+//! | `feedback` | shows only where it is asked for, with `--feedback` |
 //! | `bytes` | `\xNN` stands for a byte |
 //!
 //! A test runs every example.
@@ -35,7 +36,7 @@ pages! {
     E0401 E0402 E0403 E0404 E0405 E0406 E0407
     E0501 E0502 E0503
     W0601 W0602 W0603 W0604 W0605 W0606 W0607 W0608 W0609
-    W0701 W0702 W0703
+    W0701 W0702 W0703 W0704 W0705 W0706
 }
 
 /// What a page is made of.
@@ -60,6 +61,8 @@ pub struct Example<'p> {
     pub set: Vec<&'p str>,
     /// Whether it shows only once the picture is made.
     pub build: bool,
+    /// Whether it is given to the command as `--feedback`.
+    pub feedback: bool,
     /// Whether `\xNN` in the text stands for a byte.
     pub bytes: bool,
     /// The text, its last line end included.
@@ -106,6 +109,7 @@ fn example<'p>(words: &'p str, text: &'p str) -> Example<'p> {
                 "fail" => example.role = Some(Role::Fail),
                 "fixed" => example.role = Some(Role::Fixed),
                 "build" => example.build = true,
+                "feedback" => example.feedback = true,
                 "bytes" => example.bytes = true,
                 _ => {}
             },

@@ -26,6 +26,7 @@
 //! | [`lint`] | what is probably not meant in a scene | text |
 //! | [`render`] | scene to film; cannot fail | places, files, syntax |
 //! | [`output`] | film to the bytes of image files, and back | files |
+//! | [`aov`] | what a picture shows besides its light, as channels | files |
 //! | [`explain`] | the page on each diagnostic | how it is shown |
 //! | [`change`] | what is different between a scene and the one before it | where it is shown |
 //! | [`inventory`] | what stands in a picture, counted | how it is shown |
@@ -35,6 +36,7 @@
 
 pub mod asset;
 mod allow;
+pub mod aov;
 pub mod change;
 pub mod check;
 pub mod color;
@@ -69,6 +71,7 @@ use files::{Contents, Files};
 use import::Imported;
 use inventory::Inventory;
 use lower::{Marks, Meshes, Overrides, Places};
+use render::feedback::Feedback;
 use scene::Scene;
 use source::Sources;
 use span::{SourceId, Span};
@@ -208,6 +211,21 @@ impl Compiled {
         self.scene.as_ref().map(|scene| Provenance { scene, origins, marks, sources })
     }
 
+    /// What many paths of a finished picture tell, unless the source allows it. `noise` is that of the picture, as a share of
+    /// white.
+    pub fn heed(&self, feedback: &Feedback, noise: f64, sources: &Sources) -> Vec<Diagnostic> {
+        /// The share of the light whose loss is worth knowing for who asks.
+        const LEAST_CUT: f64 = 0.01;
+        let Some(from) = self.provenance(sources) else { return vec![] };
+        let mut said = from.findings(feedback, noise);
+        let (share, bounces) = (feedback.cut.values().sum(), from.scene.trace.bounces);
+        if share >= LEAST_CUT && bounces >= FEW_BOUNCES {
+            said.push(from.point_at_cut(self.warning(&Finding::Cut { share, bounces }), feedback));
+        }
+        allow::allow(&self.allows, &mut said);
+        said
+    }
+
     /// What a finished picture gives cause to say, unless the source allows it.
     pub fn judge(&self, finding: &Finding) -> Option<Diagnostic> {
         let mut said = vec![self.warning(finding)];
@@ -251,6 +269,9 @@ impl Compiled {
         }
     }
 }
+
+/// Limits of bounces below ask for what glows, or for direct light, and mean it.
+pub const FEW_BOUNCES: u32 = 2;
 
 /// Something about a finished picture that is probably not meant.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -117,13 +117,13 @@ pub fn human(diagnostic: &Diagnostic, sources: &Sources, style: Style) -> String
     });
     let shown = Shown {
         message: sentence(&diagnostic.message),
-        severity: diagnostic.severity(),
+        severity: Some(diagnostic.severity()),
         labels: labels.collect(),
         help: diagnostic.help.as_deref().map(sentence),
         excerpt: &excerpt,
     };
     let mut text = String::new();
-    let rendered = handler(diagnostic, style).render_report(&mut text, &shown);
+    let rendered = handler(diagnostic.code.as_str(), style).render_report(&mut text, &shown);
     // Writing to a string does not fail, and the excerpt has every place that a label names.
     debug_assert!(rendered.is_ok(), "a label outside the excerpt");
     // miette indents the first line by two columns.
@@ -133,6 +133,24 @@ pub fn human(diagnostic: &Diagnostic, sources: &Sources, style: Style) -> String
     }
     text.push_str(&uses(&diagnostic.uses, sources));
     text
+}
+
+/// What there is to say of a place that is no diagnostic: a sentence, the place with a label, and the uses that led there.
+pub fn remark(message: &str, label: &Label, chain: &[Use], sources: &Sources, style: Style) -> String {
+    let excerpt = Excerpt::new(sources.get(label.span.source), &[label.span], style.width);
+    let said = (!label.text.is_empty()).then(|| sentence(&label.text));
+    let labels = excerpt.ranges().map(|range| LabeledSpan::new_primary_with_span(said.clone(), range));
+    let shown = Shown {
+        message: sentence(message),
+        severity: None,
+        labels: labels.collect(),
+        help: None,
+        excerpt: &excerpt,
+    };
+    let mut text = String::new();
+    let rendered = handler("", style).render_report(&mut text, &shown);
+    debug_assert!(rendered.is_ok(), "a label outside the excerpt");
+    text.trim_start().to_string() + &uses(chain, sources)
 }
 
 /// The most lines that a chain of uses takes; of a longer one, its ends are shown.
@@ -162,9 +180,8 @@ fn uses(chain: &[Use], sources: &Sources) -> String {
     first.iter().map(line).chain([between]).chain(last.iter().map(line)).collect()
 }
 
-fn handler(diagnostic: &Diagnostic, style: Style) -> GraphicalReportHandler {
+fn handler(code: &str, style: Style) -> GraphicalReportHandler {
     let mut characters = if style.unicode { ThemeCharacters::unicode() } else { ThemeCharacters::ascii() };
-    let code = diagnostic.code.as_str();
     characters.error = format!("{code} {}", if style.unicode { "×" } else { "x" });
     characters.warning = format!("{code} {}", if style.unicode { "⚠" } else { "!" });
     let styles = if style.color { ThemeStyles::ansi() } else { ThemeStyles::none() };
@@ -236,7 +253,8 @@ fn printable_char(c: char) -> char {
 /// What miette is given.
 struct Shown<'a> {
     message: String,
-    severity: Severity,
+    /// None of a remark.
+    severity: Option<Severity>,
     labels: Vec<LabeledSpan>,
     help: Option<String>,
     excerpt: &'a Excerpt,
@@ -259,8 +277,9 @@ impl std::error::Error for Shown<'_> {}
 impl miette::Diagnostic for Shown<'_> {
     fn severity(&self) -> Option<miette::Severity> {
         Some(match self.severity {
-            Severity::Error => miette::Severity::Error,
-            Severity::Warning => miette::Severity::Warning,
+            Some(Severity::Error) => miette::Severity::Error,
+            Some(Severity::Warning) => miette::Severity::Warning,
+            None => miette::Severity::Advice,
         })
     }
 

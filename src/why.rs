@@ -3,13 +3,15 @@
 //! A pixel is taken apart by watching the very paths that make it ([`Apart`]); the parts add up to it. Here they get their
 //! names and places.
 
+mod feedback;
+
 use crate::color::{Rgb, luminance};
 use crate::eval::Origins;
 use crate::lower::Marks;
 use crate::render::apart::Apart;
 use crate::render::light::Source;
 use crate::render::observer::PathKind;
-use crate::scene::{Light, Material, OriginId, PrimitiveId, Scene};
+use crate::scene::{Light, Material, OriginId, Primitive, PrimitiveId, Scene};
 use crate::source::{Place, Sources};
 use crate::span::Span;
 use serde::Serialize;
@@ -74,7 +76,8 @@ pub struct Shown<'a> {
 pub struct ThingAt<'a> {
     /// Its kind: `sphere`, `light`, `sky`.
     pub kind: &'static str,
-    /// Which of several that were made at the same place, as in a loop; none where there is but one.
+    /// Which of several that came there by the same uses, where a loop has so many turns that they are not told apart; none
+    /// where there is but one.
     pub number: Option<Number>,
     /// The uses that led to it, outermost first, itself last; none of what was chosen for the user.
     pub uses: Vec<Used<'a>>,
@@ -97,6 +100,9 @@ pub struct Used<'a> {
     pub place: Place<'a>,
     /// Its first line.
     pub text: &'a str,
+    /// Of a loop the turn, such as `i = 2`, where it is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turn: Option<&'a str>,
     /// The same place, for those who have the texts.
     #[serde(skip)]
     pub span: Span,
@@ -113,13 +119,13 @@ pub struct MaterialAt<'a> {
     pub place: Option<Used<'a>>,
 }
 
-/// What a light adds to a pixel. Those that a loop makes at one place count together.
+/// What a light adds to a pixel. Those that came there by the same uses count together.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LightShare<'a> {
     /// What it is.
     #[serde(flatten)]
     pub thing: ThingAt<'a>,
-    /// How many lights of this place add anything. Where it is one, `number` tells which.
+    /// How many lights that came there by the same uses add anything. Where it is one, `number` tells which.
     pub count: usize,
     /// What it adds to the pixel's.
     pub radiance: [f64; 3],
@@ -189,12 +195,16 @@ impl<'a> Provenance<'a> {
     /// The thing that a primitive is.
     pub fn thing(&self, id: PrimitiveId) -> ThingAt<'a> {
         let primitive = &self.scene.primitives[id.0 as usize];
+        let alike = |other: &Primitive| other.origin == primitive.origin;
+        let number = number(self.scene.primitives.iter().map(alike), id.0);
+        ThingAt { number, ..self.thing_of(id) }
+    }
+
+    /// The same without its number, which takes a look at all others.
+    pub fn thing_of(&self, id: PrimitiveId) -> ThingAt<'a> {
+        let primitive = &self.scene.primitives[id.0 as usize];
         let kind = if self.is_lamp(id) { "light" } else { primitive.shape.kind() };
-        let number = || {
-            let alike = |other: &crate::scene::Primitive| other.origin == primitive.origin;
-            number(self.scene.primitives.iter().map(alike), id.0)
-        };
-        ThingAt { kind, number: number(), uses: self.uses(primitive.origin) }
+        ThingAt { kind, number: None, uses: self.uses(primitive.origin) }
     }
 
     /// The thing that a source of light is.
@@ -271,11 +281,13 @@ impl<'a> Provenance<'a> {
     }
 
     fn uses(&self, origin: OriginId) -> Vec<Used<'a>> {
-        self.origins.chain(origin).into_iter().map(|span| self.used(span)).collect()
+        let used = |(span, turn)| Used { turn, ..self.used(span) };
+        self.origins.uses(origin).into_iter().map(used).collect()
     }
 
     fn used(&self, span: Span) -> Used<'a> {
-        Used { place: self.sources.place_of(span), text: self.sources.first_line(span), span }
+        let (place, text) = (self.sources.place_of(span), self.sources.first_line(span));
+        Used { place, text, turn: None, span }
     }
 }
 

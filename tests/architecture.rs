@@ -44,8 +44,9 @@ const EDGES: &[(&str, &[&str])] = &[
     ("inventory", &["source", "schema", "check", "eval", "scene"]),
     ("mend", &["span", "diagnostic"]),
     ("report", &["span", "source", "diagnostic", "explain"]),
+    ("aov", &["math", "scene", "output", "render", "why"]),
     // It names what the tracer found, by what lowering kept beside the scene.
-    ("why", &["span", "source", "color", "eval", "scene", "lower", "render"]),
+    ("why", &["span", "source", "diagnostic", "color", "eval", "scene", "lower", "render"]),
 ];
 
 #[test]

@@ -121,7 +121,7 @@ fn every_code_has_a_case() {
         .map(|path| std::fs::read_to_string(path).unwrap())
         .collect();
     for code in Code::ALL {
-        let elsewhere = matches!(code, Code::E0009 | Code::W0701 | Code::W0702 | Code::W0703);
+        let elsewhere = matches!(code, Code::E0009) || code.as_str().starts_with("W07");
         assert!(elsewhere || shown.contains(code.as_str()), "no case for {}", code.as_str());
     }
 }

@@ -152,7 +152,7 @@ group row {
     sphere { at: ((i - 1) * 1m, 0, 0), radius: 40cm, material: shiny }
   }
 }
-lamp left { at: (-1, 1, 0)m }
+lamp left { at: (-1, 1, 2)m }
 light { at: (0, 5, 5)m, power: 60W }
 camera { from: (0, 0, 5)m, look: (0, 0, 0)m, fov: 40deg }
 ";
@@ -165,14 +165,14 @@ camera { from: (0, 0, 5)m, look: (0, 0, 0)m, fov: 40deg }
     assert_eq!(uses[1], "for i in range(3) {");
     assert!(uses[2].starts_with("sphere { at: ((i - 1"));
     assert_eq!(shown.thing.uses[2].place.start.line, 9);
-    let number = shown.thing.number.unwrap();
-    assert_eq!((number.this, number.of), (2, 3));
+    let turns: Vec<Option<&str>> = shown.thing.uses.iter().map(|used| used.turn).collect();
+    assert_eq!((turns, shown.thing.number), (vec![None, Some("i = 1"), None], None));
     let material = shown.material.as_ref().unwrap();
     assert_eq!((material.kind, material.name), ("metal", Some("shiny")));
     assert_eq!(material.place.as_ref().unwrap().text, "brass { roughness: 10% }");
     let bulb = why.lights.iter().find(|light| light.thing.kind == "sphere").unwrap();
     let uses: Vec<&str> = bulb.thing.uses.iter().map(|used| used.text).collect();
-    assert_eq!(uses[0], "lamp left { at: (-1, 1, 0)m }");
+    assert_eq!(uses[0], "lamp left { at: (-1, 1, 2)m }");
     assert!(uses[1].starts_with("sphere bulb"));
     let shares: f64 = why.lights.iter().map(|light| light.share).sum();
     assert!((shares - 1.0).abs() < 1e-9);
@@ -236,4 +236,23 @@ fn the_depth_and_normals_of_a_ball_are_a_balls() {
         let across = (f64::from(x) - f64::from(size / 2)) * step * depth;
         assert!((n.x - across).abs() < 5e-3, "{n} across {across}");
     }
+}
+
+#[test]
+fn turns_that_are_too_many_are_numbered() {
+    let text = "\
+let row = group { for i in range(2) { sphere { at: (i * 3m - 1.5m, 0, 0), radius: 1m } } }
+row {}
+for i in range(10001) { sphere { at: (0, i * 1m + 50m, 0), radius: 20cm } }
+camera { from: (0, 0, 9)m, look: (0, 0, 0)m, fov: 60deg }
+";
+    let known = Known::of(text);
+    let from = known.compiled.provenance(&known.sources).unwrap();
+    let thing = |index| from.thing(rt_lang::scene::PrimitiveId(index));
+    // What a prototype holds shares its turns; so do those behind the first many.
+    let held = thing(1);
+    assert_eq!(held.number.map(|number| (number.this, number.of)), Some((2, 2)));
+    assert!(held.uses.iter().all(|used| used.turn.is_none()));
+    assert_eq!(thing(2).uses[0].turn, Some("i = 0"));
+    assert_eq!((thing(10_001).uses[0].turn, thing(10_002).uses[0].turn), (Some("i = 9999"), None));
 }

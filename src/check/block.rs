@@ -1,7 +1,9 @@
 //! Statements: the bodies of files, parts, groups and branches.
 
 use super::order::{dependencies, sort};
-use super::program::{Block, Expr, Inside, InsideId, InsideName, Statement, StatementKind, Variable};
+use super::program::{
+    Block, Expr, ExprKind, Inside, InsideId, InsideName, Statement, StatementKind, Variable,
+};
 use super::scope::{Item, Place};
 use super::types::{Element, Kind, Type};
 use super::{Checker, errors};
@@ -10,6 +12,7 @@ use crate::syntax::ast::{self, Entry, Keyword, Name, StatementKind as Tree};
 use crate::units;
 use smol_str::SmolStr;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 use std::sync::Arc;
 
 /// What a turn of a loop counts by itself, in expressions: about as long as it takes.
@@ -133,7 +136,12 @@ impl<'a> Checker<'a> {
         let (kind, ty) = match &statement.kind {
             Tree::Thing { construct, name } => self.drawn(construct, name.as_ref(), slot),
             Tree::Definition { keyword, name, value } => {
-                let (checked, ty) = self.infer(value);
+                let (mut checked, ty) = self.infer(value);
+                if let ExprKind::Make(make) = &mut checked.kind
+                    && let Some(written) = Rc::get_mut(&mut make.written)
+                {
+                    written.defined = Some(name.text.clone());
+                }
                 self.keyword_fits(*keyword, name, value, &ty);
                 (self.define(slot, checked), ty)
             }

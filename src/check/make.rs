@@ -56,6 +56,7 @@ impl Checker<'_> {
         make.fields.sort_by_key(|(place, _)| *place);
         let written = Rc::new(Written {
             name: name.map(|name| name.text.clone()),
+            defined: None,
             span: construct.span,
             fields: make.fields.iter().map(|(_, value)| value.span).collect(),
             rows: None,

@@ -2,16 +2,21 @@
 
 mod tools;
 mod values;
+mod why;
 
 use clap::{Args, Parser, Subcommand};
+use rt_lang::aov::Aov;
 use rt_lang::lower::Overrides;
 use rt_lang::output::Depth;
 use rt_lang::schema::Tonemap;
 use std::net::SocketAddr;
 use std::path::PathBuf;
-pub use tools::{Check, Completions, Expand, Explain, Export, Info, Init, Man, Messages, Reading, Show};
+pub use tools::{
+    Check, Completions, Expand, Explain, Export, Info, Init, Man, Messages, Reading, Show, Viewpoint,
+};
 pub use values::Denied;
-use values::{address, crop, depths, exposure, samples, seed, size, stops, threads, tonemaps};
+use values::{address, aov, crop, depths, exposure, samples, seed, size, stops, threads, tonemaps};
+pub use why::Why;
 
 /// Renders .rt scenes: a small text that describes a picture becomes the picture.
 ///
@@ -83,6 +88,9 @@ pub enum Command {
     Explain(Explain),
     /// Tells what is in a scene: parameters, cameras, counts, bounds, files, and what it takes to draw it.
     Info(Info),
+    /// Tells why a pixel looks as it does: what it shows, and which lights give it its colour, by which paths.
+    #[command(after_help = why::EXAMPLES)]
+    Why(Why),
     /// Writes a scene as a flat one, without loops, parts and names, that gives the same picture to the bit.
     Expand(Expand),
     /// Writes a scene for another renderer: Mitsuba 3, pbrt-v4 or POV-Ray.
@@ -105,6 +113,7 @@ const BUILD_EXAMPLES: &str = "\
 Examples:
   rtc build balls.rt --size 160x120 --samples 8      a quick look
   rtc build balls.rt -o balls.png -o balls.exr       one picture in two forms
+  rtc build balls.rt -o balls.exr --aov depth,object what else a picture shows
   rtc build balls.rt --crop 0,0,320,240 -o part.exr  only the top left quarter
   rtc build *.rt                                     each picture beside its scene
   cat balls.rt | rtc build - -o - > balls.png        standard input and output";
@@ -166,6 +175,16 @@ pub struct Build {
     /// its width and height. Its pixels are those of the whole picture.
     #[arg(long, value_name = "X,Y,W,H", value_parser = crop)]
     pub crop: Option<[u32; 4]>,
+
+    /// Adds channels of what the picture shows besides its light to its EXR: depth, normal, albedo, samples, error, and
+    /// object and material as Cryptomatte; several with commas between.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = aov())]
+    pub aov: Vec<Aov>,
+
+    /// Watches some paths once the picture is made, and tells what makes its noise, which lights give nothing, what no
+    /// path meets, and what the limit of bounces costs.
+    #[arg(long)]
+    pub feedback: bool,
 
     #[command(flatten)]
     #[allow(missing_docs)]

@@ -9,11 +9,14 @@ use super::target::{Staged, Target};
 use super::terminal::Terminal;
 use super::{Exit, Problem, scene as scenes};
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use rt_lang::Finding;
+use rt_lang::aov::{self, Aov};
 use rt_lang::diagnostic::Diagnostic;
-use rt_lang::output::{Depth, Facts, Format, Picture, encode};
+use rt_lang::output::{Channels, Depth, Facts, Format, Picture, encode, encode_exr};
+use rt_lang::render::feedback::Feedback;
 use rt_lang::render::{Cancelled, Control, Prepass, Rendered, Shown, Tracer, Window};
 use rt_lang::scene::{self, Background, Scene};
+use rt_lang::why::Provenance;
+use rt_lang::{FEW_BOUNCES, Finding};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -45,6 +48,10 @@ struct Traced {
     fitting: f64,
     /// About the share of the light that the limit of bounces loses.
     cut: f64,
+    /// What is shown beside the light.
+    channels: Channels,
+    /// What many paths tell, if that was asked for.
+    feedback: Option<Feedback>,
 }
 
 /// Makes the pictures in turn, also those behind one that fails.
@@ -98,6 +105,9 @@ fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
     }
     refuse_inputs_as_outputs(scenes, &all)?;
     refuse_idle_depth(arguments.taking.look.bits, &all)?;
+    for job in &jobs {
+        refuse_idle_aovs(&arguments.aov, &job.targets)?;
+    }
     if on_standard_output(&arguments.messages) && all.iter().any(|target| is_standard(&target.path)) {
         let problem = Problem::new("the picture and the messages would both go to standard output");
         return Err(problem.help("write the picture to a file, or use `--message-format short`"));
@@ -140,6 +150,19 @@ pub fn refuse_idle_depth(depth: Depth, targets: &[Target]) -> Result<(), Problem
     Err(problem.help("exr, hdr and pfm hold floats, jpg and webp always 8 bits"))
 }
 
+/// `--aov` must find an EXR to hold its channels, and each of them once.
+fn refuse_idle_aovs(wanted: &[Aov], targets: &[Target]) -> Result<(), Problem> {
+    let repeated = |(index, aov): (usize, &Aov)| wanted[..index].contains(aov);
+    if wanted.iter().enumerate().any(repeated) {
+        return Err(Problem::new("`--aov` names something twice"));
+    }
+    if wanted.is_empty() || targets.iter().any(|target| target.format == Format::Exr) {
+        return Ok(());
+    }
+    let problem = Problem::new("`--aov` is for EXR files, and no output is one");
+    Err(problem.help("write one, maybe beside another: `-o picture.png -o picture.exr`"))
+}
+
 fn first_repeated(paths: &[PathBuf]) -> Option<&PathBuf> {
     let known: Vec<PathBuf> = paths.iter().map(|path| same(path)).collect();
     (1..paths.len()).find(|&i| known[..i].contains(&known[i])).map(|i| &paths[i])
@@ -165,11 +188,17 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
     };
     let window = window(scene, arguments.crop)?;
     let staged = stage(job, scene, window, context.interrupt)?;
-    let Ok(traced) = trace(context, job, scene, window) else { context.interrupt.wait() };
+    let Some(from) = compiled.provenance(&loaded.sources) else { return Ok(Exit::Diagnostics) };
+    let Ok(traced) = trace(context, job, from, window) else { context.interrupt.wait() };
     let facts = facts(scene, &traced);
-    context.threads.install(|| write(&traced.picture, &facts, arguments.taking.look.bits, staged))?;
+    let depth = arguments.taking.look.bits;
+    context.threads.install(|| write(&traced.picture, &facts, &traced.channels, depth, staged))?;
     let findings = findings(scene, &traced);
-    let warnings: Vec<Diagnostic> = findings.iter().filter_map(|finding| compiled.judge(finding)).collect();
+    let mut warnings: Vec<Diagnostic> =
+        findings.iter().filter_map(|finding| compiled.judge(finding)).collect();
+    if let Some(feedback) = &traced.feedback {
+        warnings.extend(compiled.heed(feedback, traced.noise, &loaded.sources));
+    }
     if !warnings.is_empty() {
         exit = exit.max(messenger.say(&warnings, &loaded.sources)?);
     }
@@ -182,8 +211,6 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
 
 /// The share of the light that may be lost to the limit of bounces before it is worth a warning.
 const MOST_CUT: f64 = 0.05;
-/// Limits below ask for what glows, or for direct light, and mean it.
-const FEW_BOUNCES: u32 = 2;
 /// The share of a picture that may burn out to white, by an exposure that was given.
 const MOST_BURNT_OUT: f64 = 0.25;
 
@@ -195,7 +222,8 @@ fn findings(scene: &Scene, traced: &Traced) -> Vec<Finding> {
         findings.push(Finding::Noisy { noise, samples });
     }
     let bounces = scene.trace.bounces;
-    if bounces >= FEW_BOUNCES && traced.cut > MOST_CUT {
+    // Feedback knows better.
+    if traced.feedback.is_none() && bounces >= FEW_BOUNCES && traced.cut > MOST_CUT {
         findings.push(Finding::Cut { share: traced.cut, bounces });
     }
     if scene.develop.exposure.is_some() {
@@ -268,7 +296,8 @@ fn stage(job: &Job, scene: &Scene, window: Window, interrupt: &Interrupt) -> Res
 }
 
 /// Traces a window, showing how far it is.
-fn trace(context: &Context, job: &Job, scene: &Scene, window: Window) -> Result<Traced, Cancelled> {
+fn trace(context: &Context, job: &Job, from: Provenance, window: Window) -> Result<Traced, Cancelled> {
+    let (scene, arguments) = (from.scene, context.arguments);
     let control = Arc::new(Control::new());
     context.interrupt.watch(control.clone());
     let shown = context.terminal.interactive && !context.arguments.quiet;
@@ -287,8 +316,16 @@ fn trace(context: &Context, job: &Job, scene: &Scene, window: Window) -> Result<
             Background::Sky => picture,
             Background::Transparent => picture.with_alpha(|x, y| rendered.film.alpha(x, y)),
         };
-        let Rendered { samples, noise, target_met, .. } = rendered;
-        Ok(Traced { picture, samples, noise, target_met, stops, fitting: chosen, cut: prepass.cut })
+        let Rendered { film, samples, mut noise, target_met } = rendered;
+        let of_first = arguments.aov.iter().any(|aov| aov.is_of_first_hits());
+        let first = of_first.then(|| tracer.first_hits(window, samples, &control)).transpose()?;
+        let channels = aov::channels(&arguments.aov, &film, first.as_ref(), from);
+        let feedback = arguments.feedback.then(|| tracer.feedback(window));
+        if feedback.is_some() {
+            noise = film.noise(stops, scene.develop.tonemap);
+        }
+        let (fitting, cut) = (chosen, prepass.cut);
+        Ok(Traced { picture, samples, noise, target_met, stops, fitting, cut, channels, feedback })
     })
 }
 
@@ -299,9 +336,18 @@ pub fn chosen_stops(prepass: &Prepass) -> f64 {
 }
 
 /// Writes every form of a picture, and only then moves them to their places.
-pub fn write(picture: &Picture, facts: &Facts, depth: Depth, mut staged: Vec<Staged>) -> Result<(), Problem> {
+pub fn write(
+    picture: &Picture,
+    facts: &Facts,
+    channels: &Channels,
+    depth: Depth,
+    mut staged: Vec<Staged>,
+) -> Result<(), Problem> {
     for file in &mut staged {
-        let bytes = encode(picture, facts, file.target.format, depth);
+        let bytes = match file.target.format {
+            Format::Exr => encode_exr(picture, facts, channels),
+            format => encode(picture, facts, format, depth),
+        };
         let bytes = bytes.map_err(|reason| {
             Problem::new(format!("cannot write {}: {reason}", names(std::slice::from_ref(&file.target))))
         })?;

@@ -5,7 +5,7 @@ use super::interrupt::Interrupt;
 use super::target::Staged;
 use super::terminal::Terminal;
 use super::{Exit, Problem, build, input};
-use rt_lang::output::{MOST_PIXELS, decode_exr};
+use rt_lang::output::{Channels, MOST_PIXELS, decode_exr};
 
 /// The largest EXR that is read: the most pixels, uncompressed, with a channel to spare.
 const LARGEST: u64 = MOST_PIXELS * 16;
@@ -23,7 +23,7 @@ pub fn run(arguments: &Develop, terminal: Terminal, interrupt: &Interrupt) -> Re
     facts.stops = arguments.exposure.or(facts.stops);
     facts.tonemap = arguments.look.tonemap.or(facts.tonemap);
     let staged: Result<Vec<Staged>, Problem> = targets.iter().map(|target| target.stage(interrupt)).collect();
-    build::write(&picture, &facts, arguments.look.bits, staged?)?;
+    build::write(&picture, &facts, &Channels::default(), arguments.look.bits, staged?)?;
     if !arguments.quiet {
         let [width, height] = picture.size;
         let stops = facts.stops.unwrap_or(0.0);

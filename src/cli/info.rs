@@ -132,8 +132,8 @@ fn spread(min: DVec3, max: DVec3) -> String {
     format!("{} to {}, {} wide, high and deep", show(min), show(max), show(size))
 }
 
-/// To four digits.
-fn short(x: f64) -> f64 {
+/// A number to four digits.
+pub fn short(x: f64) -> f64 {
     format!("{x:.3e}").parse::<f64>().unwrap_or(x) + 0.0
 }
 

@@ -11,7 +11,7 @@
 //! | [`interrupt`] | Ctrl-C |
 //! | [`terminal`] | the one writer to standard error |
 //! | [`progress`] | how far a picture is |
-//! | [`build`], [`check`], [`develop`], [`expand`], [`explain`], [`export`], [`fmt`], [`info`], [`init`], [`manual`] | the commands |
+//! | [`build`], [`check`], [`develop`], [`expand`], [`explain`], [`export`], [`fmt`], [`info`], [`init`], [`manual`], [`why`] | the commands |
 
 mod args;
 mod build;
@@ -33,6 +33,7 @@ mod progress;
 mod scene;
 mod target;
 mod terminal;
+mod why;
 
 use args::{Arguments, Command};
 use clap::Parser;
@@ -104,6 +105,7 @@ pub fn main() -> ExitCode {
         Command::Completions(completions) => manual::completions(&completions),
         Command::Man(man) => manual::man(&man),
         Command::Fmt(fmt) => fmt::run(&fmt, terminal, &interrupt),
+        Command::Why(why) => why::run(&why, terminal),
     };
     let exit = ended.unwrap_or_else(|problem| {
         terminal.problem(&problem);

@@ -29,6 +29,11 @@ impl Terminal {
         Terminal { interactive, style: Style { color, unicode, width } }
     }
 
+    /// How text on it looks.
+    pub fn style(self) -> Style {
+        self.style
+    }
+
     /// Writes a line.
     pub fn line(self, text: &str) {
         self.text(&format!("{text}\n"));

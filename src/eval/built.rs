@@ -1,6 +1,7 @@
 //! Things as they are put into the picture: flat, each with the group it stands in and where it came from.
 
 use super::draw::Fresh;
+use super::origin::Turns;
 use super::value::{Fields, Given, Group, Made, Placed, Site, ThingId, Value};
 use crate::math::DAffine3;
 use crate::schema::{Category, KindId, placed};
@@ -33,6 +34,8 @@ pub(super) struct Built {
     pub(super) solo: Vec<ThingId>,
     /// Chains of uses: a place, and the link of the use around it.
     pub(super) links: Vec<(Span, u32)>,
+    /// Which of these are turns of a loop.
+    pub(super) turns: Turns,
 }
 
 /// One thing. There are many: what they share is kept once, and their values one behind the other.
@@ -150,6 +153,14 @@ impl Built {
         }
         self.links.push((span, outer));
         self.links.len() as u32 - 1
+    }
+
+    /// A link of one turn of a loop, whose own link is given.
+    pub(super) fn turn(&mut self, span: Span, repeat: u32, which: String) -> u32 {
+        self.links.push((span, repeat));
+        let link = self.links.len() as u32 - 1;
+        self.turns.push((link, which.into()));
+        link
     }
 
     /// Names the things from `first` on.

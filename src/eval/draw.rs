@@ -304,6 +304,7 @@ fn flat(made: Rc<Made>) -> Rc<Made> {
     }
     let written = crate::check::Written {
         name: made.site.written.name.clone(),
+        defined: made.site.written.defined.clone(),
         span: made.span(),
         fields: spans.into(),
         rows: None,

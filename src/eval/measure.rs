@@ -46,8 +46,13 @@ impl Evaluator<'_> {
             }
             Value::Part(part) => {
                 let outer = self.begin_buffer();
-                let written =
-                    crate::check::Written { name: None, span: part.span, fields: [].into(), rows: None };
+                let written = crate::check::Written {
+                    name: None,
+                    defined: None,
+                    span: part.span,
+                    fields: [].into(),
+                    rows: None,
+                };
                 self.draw_part_value(part, Rc::new(written), &[span], false);
                 self.bounds_of_buffer(outer, span)
             }

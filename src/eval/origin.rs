@@ -30,27 +30,50 @@ impl Way {
     }
 }
 
-/// Chains of uses, each a place and the use around it. All turns of a loop share one.
+/// Chains of uses, each a place and the use around it. The first turns of loops in the picture have one each; the others of a
+/// loop share one.
 #[derive(Clone, Debug, Default)]
 pub struct Origins {
     links: Vec<(Span, u32)>,
+    turns: Turns,
 }
+
+/// The links that are turns of loops, in order, each with which one it is: `i = 2`. What is around them is the loop itself.
+pub(super) type Turns = Vec<(u32, Box<str>)>;
 
 impl Origins {
     /// Takes links in, each with the index of the one around it.
-    pub(super) fn new(links: Vec<(Span, u32)>) -> Origins {
-        Origins { links }
+    pub(super) fn new(links: Vec<(Span, u32)>, turns: Turns) -> Origins {
+        Origins { links, turns }
     }
 
     /// The chain of places, outermost use first.
     pub fn chain(&self, id: OriginId) -> Vec<Span> {
+        self.uses(id).into_iter().map(|(span, _)| span).collect()
+    }
+
+    /// The same with the turns of loops where they are known.
+    pub fn uses(&self, id: OriginId) -> Vec<(Span, Option<&str>)> {
         let mut chain = vec![];
         let mut next = id.0;
-        while let Some((span, outer)) = self.links.get(next as usize).filter(|_| next != NONE) {
-            chain.push(*span);
-            next = *outer;
+        while let Some((span, outer)) = self.link(next) {
+            let turn = self.turn(next);
+            chain.push((span, turn));
+            next = match turn {
+                Some(_) => self.link(outer).map_or(NONE, |(_, around)| around),
+                None => outer,
+            };
         }
         chain.reverse();
         chain
+    }
+
+    fn link(&self, index: u32) -> Option<(Span, u32)> {
+        self.links.get(index as usize).copied().filter(|_| index != NONE)
+    }
+
+    fn turn(&self, link: u32) -> Option<&str> {
+        let found = self.turns.binary_search_by_key(&link, |(turn, _)| *turn).ok()?;
+        Some(&self.turns[found].1)
     }
 }

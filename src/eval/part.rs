@@ -231,7 +231,8 @@ fn as_group(placed: [Option<Given>; PLACED.len()], written: &Written) -> Made {
             spans.push(span);
         }
     }
-    let own = Written { name: written.name.clone(), span: written.span, fields: spans.into(), rows: None };
+    let (name, defined) = (written.name.clone(), written.defined.clone());
+    let own = Written { name, defined, span: written.span, fields: spans.into(), rows: None };
     let written = Rc::new(own);
     let site = Rc::new(Site { kind: group::KIND, mask, written, base: None, group: None });
     Made { site, row: 0, values }

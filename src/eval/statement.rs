@@ -8,6 +8,11 @@ use crate::syntax::Rows;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+/// The most turns of loops that are told apart in the table of origins, for those who ask later.
+const MOST_TURNS: usize = 10_000;
+/// The longest text, in bytes, that names a turn there.
+const MOST_TEXT: usize = 100;
+
 impl Evaluator<'_> {
     /// Evaluates the statements of a scope. With `definitions` only what is named: nothing else of an imported file
     /// is asked for.
@@ -126,13 +131,14 @@ impl Evaluator<'_> {
             return;
         };
         let outer = self.link;
-        self.link = self.out().link(span, outer);
+        let link = self.out().link(span, outer);
         self.uses.push(Way { span, turn: None });
         let mut index = 0;
         while let Some(item) = list.get(index) {
             if !self.step(cost, span) {
                 break;
             }
+            self.link = self.turn(span, link, variable, &item);
             if let Some(way) = self.uses.last_mut() {
                 way.turn = Some((variable.clone(), item.clone()));
             }
@@ -142,6 +148,20 @@ impl Evaluator<'_> {
         }
         self.uses.pop();
         self.link = outer;
+    }
+
+    /// The link of a turn of a loop: one of its own while there are few in the picture, else the loop's.
+    fn turn(&mut self, span: Span, repeat: u32, variable: &Variable, item: &Value) -> u32 {
+        let drawn = self.buffers.len() == 1;
+        let long = matches!(item, Value::Text(text) if text.len() > MOST_TEXT);
+        let out = self.out();
+        if long || !drawn || out.turns.len() >= MOST_TURNS {
+            return repeat;
+        }
+        match errors::turn(variable, item) {
+            Some(which) => out.turn(span, repeat, which),
+            None => repeat,
+        }
     }
 
     fn assert(&mut self, condition: &Expr, message: Option<&Expr>) {

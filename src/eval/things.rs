@@ -73,7 +73,7 @@ impl Things {
             });
         }
         let hidden = hidden(&built);
-        let origins = Origins::new(std::mem::take(&mut built.links));
+        let origins = Origins::new(std::mem::take(&mut built.links), std::mem::take(&mut built.turns));
         Things { built, groups, hidden, origins, defaults: Defaults::default(), incomplete }
     }
 

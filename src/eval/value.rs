@@ -152,7 +152,7 @@ pub struct Given {
 impl Made {
     /// A thing of a kind with nothing given.
     pub fn new(kind: KindId, span: Span) -> Made {
-        let written = Rc::new(Written { name: None, span, fields: [].into(), rows: None });
+        let written = Rc::new(Written { name: None, defined: None, span, fields: [].into(), rows: None });
         let site = Rc::new(Site { kind, mask: 0, written, base: None, group: None });
         Made { site, row: 0, values: SmallVec::new() }
     }
@@ -222,11 +222,12 @@ impl<'t> Fields<'t> {
         self.site.written.name.as_ref()
     }
 
-    /// The name by which it is known: its own, or else that of the nearest prototype that has one.
+    /// The name by which it is known: its own, or that of its definition, or else that of the nearest prototype that has one.
     pub fn known_as(self) -> Option<&'t SmolStr> {
         let mut made = self;
         loop {
-            match made.name() {
+            let written = &made.site.written;
+            match written.name.as_ref().or(written.defined.as_ref()) {
                 Some(name) => return Some(name),
                 None => made = made.site.base.as_ref()?.fields(),
             }

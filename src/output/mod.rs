@@ -87,6 +87,24 @@ fn share(v: f32) -> f32 {
     if v.is_nan() { 0.0 } else { v.clamp(0.0, 1.0) }
 }
 
+/// What an EXR holds beside its picture.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Channels {
+    /// Further channels.
+    pub planes: Vec<Plane>,
+    /// Further attributes, each a name and a text in ASCII.
+    pub texts: Vec<(String, String)>,
+}
+
+/// A channel of 32-bit floats.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plane {
+    /// With the layer before a dot: `normal.X`.
+    pub name: String,
+    /// A value for each pixel of the picture, row by row from the top left.
+    pub values: Vec<f32>,
+}
+
 /// How a picture came about: kept in the attributes of an EXR.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Facts {
@@ -231,10 +249,15 @@ pub fn encode(
         Format::Png => displayed::png(picture, facts.developing(), depth),
         Format::Jpeg => displayed::jpeg(picture, facts.developing()),
         Format::WebP => displayed::webp(picture, facts.developing()),
-        Format::Exr => openexr::encode(picture, facts),
+        Format::Exr => openexr::encode(picture, facts, &Channels::default()),
         Format::Hdr => Ok(linear::hdr(picture, facts)),
         Format::Pfm => Ok(linear::pfm(picture)),
     }
+}
+
+/// The bytes of an EXR with more than the picture.
+pub fn encode_exr(picture: &Picture, facts: &Facts, channels: &Channels) -> Result<Vec<u8>, CannotEncode> {
+    openexr::encode(picture, facts, channels)
 }
 
 #[cfg(test)]

@@ -1,13 +1,13 @@
 //! OpenEXR: scene radiance in 32-bit floats, with how it came about in the attributes.
 
-use super::{CannotDecode, CannotEncode, Facts, MOST_PIXELS, Picture, finite, share, unless_whole};
+use super::{CannotDecode, CannotEncode, Channels, Facts, MOST_PIXELS, Picture, finite, share, unless_whole};
 use crate::scene::Tonemap;
 use exr::meta::MetaData;
 use exr::meta::attribute::{AttributeValue, Chromaticities, IntegerBounds, LineOrder, Text};
 use exr::meta::header::{ImageAttributes, LayerAttributes};
 use exr::prelude::{
-    Blocks, Compression, Encoding, Image, Layer, ReadChannels, ReadLayers, SpecificChannels, Vec2,
-    WritableImage, read,
+    AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer, ReadChannels,
+    ReadLayers, Vec2, WritableImage, read,
 };
 use std::io::Cursor;
 
@@ -26,36 +26,37 @@ const SRGB: Chromaticities = Chromaticities {
     white: Vec2(0.3127, 0.329),
 };
 
-/// A file with the channels R, G, B and, where there is one, A. The display window is the whole picture, the data window what was
-/// traced of it.
-pub(super) fn encode(picture: &Picture, facts: &Facts) -> Result<Vec<u8>, CannotEncode> {
+/// A file with the channels R, G, B and, where there is one, A, and whatever else there is. The display window is the whole
+/// picture, the data window what was traced of it.
+pub(super) fn encode(picture: &Picture, facts: &Facts, channels: &Channels) -> Result<Vec<u8>, CannotEncode> {
     let position = Vec2(picture.offset[0] as i32, picture.offset[1] as i32);
     let size = Vec2(picture.size[0] as usize, picture.size[1] as usize);
     let whole = Vec2(picture.whole[0] as usize, picture.whole[1] as usize);
-    let index = |at: Vec2<usize>| at.y() * size.x() + at.x();
     let mut image = ImageAttributes::new(IntegerBounds::new((0, 0), whole));
     image.chromaticities = Some(SRGB);
-    let (image, attributes) = (Image::empty(image), attributes(facts, position));
+    let mut attributes = attributes(facts, position);
+    let texts = channels.texts.iter().filter_map(|(name, value)| Some((text(name)?, text(value)?)));
+    attributes.other.extend(texts.map(|(name, value)| (name, AttributeValue::Text(value))));
+    let layer = Layer::new(size, attributes, ENCODING, planes(picture, channels));
     let mut file = Cursor::new(Vec::new());
-    let written = match &picture.alpha {
-        None => {
-            let pixel = |at| <(f32, f32, f32)>::from(picture.pixels[index(at)]);
-            let layer = Layer::new(size, attributes, ENCODING, SpecificChannels::rgb(pixel));
-            image.with_layer(layer).write().to_buffered(&mut file)
-        }
-        Some(alpha) => {
-            let pixel = |at| {
-                let [r, g, b] = picture.pixels[index(at)];
-                (r, g, b, alpha[index(at)])
-            };
-            let layer = Layer::new(size, attributes, ENCODING, SpecificChannels::rgba(pixel));
-            image.with_layer(layer).write().to_buffered(&mut file)
-        }
-    };
+    let written = Image::empty(image).with_layer(layer).write().to_buffered(&mut file);
     written.map_err(|error| CannotEncode(error.to_string()))?;
     let mut file = file.into_inner();
     sort_header(&mut file).ok_or_else(|| CannotEncode("the header just written cannot be read".into()))?;
     Ok(file)
+}
+
+/// All channels, in the order of their names, as the format wants them.
+fn planes(picture: &Picture, channels: &Channels) -> AnyChannels<FlatSamples> {
+    let color = ["R", "G", "B"].into_iter().enumerate().map(|(channel, name)| {
+        let values = picture.pixels.iter().map(|pixel| pixel[channel]).collect();
+        AnyChannel::new(name, FlatSamples::F32(values))
+    });
+    let alpha = picture.alpha.iter().map(|alpha| AnyChannel::new("A", FlatSamples::F32(alpha.clone())));
+    let more = channels.planes.iter().filter_map(|plane| {
+        Some(AnyChannel::new(text(&plane.name)?, FlatSamples::F32(plane.values.clone())))
+    });
+    AnyChannels::sort(color.chain(alpha).chain(more).collect())
 }
 
 /// Lossless; lines in order, for the same bytes on any number of threads.

@@ -4,7 +4,7 @@ use super::Tracer;
 use super::film::{self, Pixel};
 use super::first::{First, Firsts};
 use super::light::Source;
-use super::observer::{Contribution, Meeting, Observer, PathKind};
+use super::observer::{Contribution, Meeting, Observer, PathKind, Place};
 use crate::color::{Rgb, luminance};
 use crate::scene::Camera;
 use rayon::prelude::*;
@@ -133,6 +133,10 @@ pub(super) struct Watched {
     pub(super) first: Option<First>,
     /// What it is made of.
     pub(super) contributions: Vec<Contribution>,
+    /// Every surface that it met, in order.
+    pub(super) met: Vec<Place>,
+    /// Where the limit of bounces ended it, and the throughput that was left.
+    pub(super) cut: Option<(Place, Rgb)>,
 }
 
 /// Samples that are watched before what they did is added up.
@@ -152,10 +156,11 @@ impl Tracer<'_> {
 
     /// Traces one path and keeps all that it did.
     pub(super) fn watched(&self, [x, y]: [u32; 2], sample: u32) -> Watched {
-        let mut watcher = Watcher { camera: &self.scene.camera, first: None, contributions: vec![] };
+        let camera = &self.scene.camera;
+        let mut watcher = Watcher { camera, first: None, contributions: vec![], met: vec![], cut: None };
         let sampled = self.sample(x, y, sample, &mut watcher);
-        let Watcher { first, contributions, .. } = watcher;
-        Watched { sampled, first, contributions }
+        let Watcher { first, contributions, met, cut, .. } = watcher;
+        Watched { sampled, first, contributions, met, cut }
     }
 }
 
@@ -163,14 +168,21 @@ struct Watcher<'a> {
     camera: &'a Camera,
     first: Option<First>,
     contributions: Vec<Contribution>,
+    met: Vec<Place>,
+    cut: Option<(Place, Rgb)>,
 }
 
 impl Observer for Watcher<'_> {
     fn met(&mut self, meeting: &Meeting) {
         self.first.get_or_insert_with(|| First::new(meeting, self.camera));
+        self.met.push(meeting.place);
     }
 
     fn contributed(&mut self, contribution: &Contribution) {
         self.contributions.push(*contribution);
+    }
+
+    fn cut(&mut self, place: Place, throughput: Rgb) {
+        self.cut = Some((place, throughput));
     }
 }

@@ -35,6 +35,11 @@ impl First {
             color: meeting.color,
         }
     }
+
+    /// The surface.
+    pub(super) fn primitive(&self) -> PrimitiveId {
+        self.primitive
+    }
 }
 
 /// What the rays of a pixel meet first, summed by the weights that samples have in the pixel. Added up in the order of

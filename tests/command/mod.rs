@@ -5,6 +5,7 @@ mod layout;
 mod pictures;
 mod tools;
 mod watch;
+mod why;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -47,6 +47,9 @@ fn codes_given(page: &str, role: Role) -> BTreeSet<String> {
         if example.build {
             command = desk.command("build --message-format json scene.rt");
         }
+        if example.feedback {
+            command.arg("--feedback");
+        }
         command.args(example.set.iter().flat_map(|value| ["--set", value]));
         desk.put(example.file.unwrap_or("scene.rt"), bytes(&example));
     }
@@ -255,7 +258,7 @@ fn a_first_scene_is_whole_and_replaces_nothing() {
 #[test]
 fn completions_and_manual_pages_know_every_command() {
     let desk = Desk::new();
-    let commands = ["build", "check", "develop", "explain", "info", "init", "completions", "man"];
+    let commands = ["build", "check", "develop", "explain", "info", "init", "completions", "man", "why"];
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
         let script = desk.run(&format!("completions {shell}"));
         assert_eq!((script.code, script.stderr.as_str()), (Some(0), ""));

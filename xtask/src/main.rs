@@ -31,6 +31,7 @@ const STEPS: &[(&str, Step)] = &[
     ("reference", reference::agreement),
     ("export", export::agreement),
     ("preview", preview::checks),
+    ("mattes", mattes),
     ("processors", processors::same_bits),
     (ARM, processors::same_bits_on_arm),
     ("readme", readme::commands),
@@ -44,9 +45,10 @@ cargo xtask gallery
 
   makes the pictures of docs/gallery anew, in about ten minutes on two cores
 
-cargo xtask compare [--rounds N] [SCENE…]
+cargo xtask compare [--rounds N] [--budget SECONDS] [SCENE…]
 
-  renders scenes in turns with Mitsuba and POV-Ray, on an idle machine, and prints what each took
+  renders scenes in turns with Mitsuba and POV-Ray, best on an idle machine, and prints what each took; the rounds of
+  a scene end when there were enough or its seconds are spent, and references are kept in target/compare
 
 cargo xtask latency [ROUNDS]
 
@@ -61,6 +63,7 @@ cargo xtask e2e [STEP…]
   reference  the room against a converged picture of another renderer (minutes)
   export     exported scenes against Mitsuba (from PyPI) and POV-Ray (povray, of Debian)
   preview    the page of `rtc watch` in a browser (chromium, of Debian; playwright-core, from npm, which needs node)
+  mattes     Cryptomatte by an independent reader (from PyPI)
   processors the same bytes on other x86-64 processors, by emulation (qemu-user)
   arm        the same on an ARM with NEON (gcc-aarch64-linux-gnu, and rustup for its standard library)
   readme     every command of the README, in a fresh clone of HEAD
@@ -206,6 +209,11 @@ fn full_disk(place: &Place) -> Outcome {
 
 fn memory(place: &Place) -> Outcome {
     script(place, "bash", "memory.sh")
+}
+
+fn mattes(place: &Place) -> Outcome {
+    let python = tools::cryptomatte(&place.desk.with_file_name("cryptomatte"))?;
+    script(place, &python.to_string_lossy(), "mattes.py")
 }
 
 fn licences(place: &Place) -> Outcome {

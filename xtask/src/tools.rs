@@ -57,12 +57,22 @@ fn starts(program: &str) -> bool {
 
 /// A Python that has Mitsuba, in an environment in a folder, made if need be.
 pub fn mitsuba(folder: &Path) -> Result<PathBuf, String> {
+    python(folder, "import mitsuba, numpy", &["mitsuba==3.9.1", "numpy"])
+}
+
+/// A Python that reads Cryptomatte, in an environment in a folder, made if need be.
+pub fn cryptomatte(folder: &Path) -> Result<PathBuf, String> {
+    let packages = ["cryptomatte-api==1.0.0", "OpenEXR==3.5.3", "numpy"];
+    python(folder, "import cryptomatte_api, OpenEXR, numpy", &packages)
+}
+
+/// A Python with packages of PyPI, which work if these lines do.
+fn python(folder: &Path, lines: &str, packages: &[&str]) -> Result<PathBuf, String> {
     let python = folder.join("bin/python");
-    let works =
-        || Command::new(&python).args(["-c", "import mitsuba, numpy"]).status().is_ok_and(|s| s.success());
+    let works = || Command::new(&python).args(["-c", lines]).status().is_ok_and(|s| s.success());
     if !works() {
         run(Command::new("python3").args(["-m", "venv"]).arg(folder))?;
-        run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "mitsuba==3.9.1", "numpy"]))?;
+        run(Command::new(&python).args(["-m", "pip", "install", "--quiet"]).args(packages))?;
     }
     Ok(python)
 }

@@ -28,6 +28,8 @@ pub struct Make {
 pub struct Written {
     /// The name it is given.
     pub name: Option<SmolStr>,
+    /// The name of the definition whose value it is.
+    pub defined: Option<SmolStr>,
     /// From the kind to the closing brace.
     pub span: Span,
     /// Where the fields' values stand, in the order of [`Make::fields`].

@@ -2,6 +2,7 @@
 
 use super::Exposure;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use rt_lang::aov::Aov;
 use rt_lang::diagnostic::{Code, Severity};
 use rt_lang::lower::MAX_PIXELS;
 use rt_lang::output::Depth;
@@ -71,6 +72,12 @@ pub fn crop(text: &str) -> Result<[u32; 4], String> {
     }
 }
 
+pub fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let parts =
+        text.split_once(',').and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));
+    parts.ok_or_else(|| "column and row in whole pixels, such as 320,240".into())
+}
+
 pub fn exposure(text: &str) -> Result<Exposure, String> {
     if text == "auto" {
         return Ok(Exposure::Auto);
@@ -102,6 +109,11 @@ pub fn tonemaps() -> impl TypedValueParser<Value = Tonemap> {
     let value = |word: &Word| PossibleValue::new(word.name).help(word.doc);
     let words = PossibleValuesParser::new(Tonemap::WORDS.iter().map(value));
     words.try_map(|word| Tonemap::from_word(&word).ok_or("not a curve"))
+}
+
+pub fn aov() -> impl TypedValueParser<Value = Aov> {
+    let names = PossibleValuesParser::new(Aov::ALL.iter().map(|(_, name)| *name));
+    names.try_map(|name| Aov::from_name(&name).ok_or("not a channel"))
 }
 
 pub fn depths() -> impl TypedValueParser<Value = Depth> {
