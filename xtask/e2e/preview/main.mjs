@@ -193,7 +193,7 @@ await check("a stop is a factor of two", {}, async ({ url }) => {
   await finished(page);
   const before = await shown(page, 5000);
   for (let i = 0; i < 4; i++) await page.keyboard.press("]");
-  equal(await page.textContent("#exposure-text"), "1.00 stops (file + 1.00)", "exposure");
+  equal(await page.textContent("#exposure-text"), "1.00 stops (+ 1.00)", "exposure");
   const after = await shown(page, 5000);
   const linear = (v) => (v / 255 <= 0.04045 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4);
   let compared = 0;

@@ -77,7 +77,7 @@ function tonemap() {
 function develop() {
   const look = { stops: stops(), tonemap: tonemap(), show: state.show };
   sessionStorage.setItem("look", JSON.stringify({ stops: state.stops, tonemap: state.tonemap, show: state.show }));
-  const offset = state.stops === 0 ? "" : ` (file ${signed(state.stops)})`;
+  const offset = state.stops === 0 ? "" : ` (${signed(state.stops)})`;
   say(part("exposure-text"), `${look.stops.toFixed(2)} stops${offset}`);
   part("exposure").value = state.stops;
   part("exposure-back").hidden = state.stops === 0;
