@@ -4,7 +4,7 @@
 import { existsSync } from "node:fs";
 import { join } from "node:path";
 import { deaf, guarded } from "./guard.mjs";
-import { SCENE, assert, browse, equal, finished, load, open, pause, placeOf, run, save, shown, until, watch } from "./setting.mjs";
+import { SCENE, assert, browse, equal, finished, load, open, placeOf, run, save, shown, until, watch } from "./setting.mjs";
 
 const SIZE = [240, 160];
 const desk = process.cwd();
@@ -221,10 +221,10 @@ await check("a slow page slows nobody", {}, async ({ url }, scene) => {
     }
     return performance.now() - start;
   };
-  const with_slow = await rounds();
+  const withSlow = await rounds();
   slow.forEach((socket) => socket.destroy());
   const without = await rounds();
-  assert(with_slow < 2 * without + 500, `10 saves took ${Math.round(with_slow)} ms beside slow pages, ${Math.round(without)} ms without`);
+  assert(withSlow < 2 * without + 500, `10 saves took ${Math.round(withSlow)} ms beside slow pages, ${Math.round(without)} ms without`);
 });
 
 await check("params are set and written back", {}, async ({ url }, scene) => {
