@@ -10,8 +10,11 @@ use rt_lang::lint::lint;
 use rt_lang::lower::{Lowered, Meshes, Overrides, lower, measure};
 use rt_lang::source::{Source, Sources};
 use rt_lang::{Options, compile};
+use scenes::Numbers;
 use std::fmt::Write;
 use std::sync::Arc;
+
+mod scenes;
 
 fn main() {
     divan::main();
@@ -19,17 +22,6 @@ fn main() {
 
 /// So many things in each scene.
 const THINGS: usize = 200_000;
-
-/// Numbers that look random and are the same every time: the linear congruence of Knuth's MMIX.
-struct Numbers(u64);
-
-impl Numbers {
-    /// Hundredths from −5 to 5.
-    fn metres(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 40) % 1001) as f64 / 100.0 - 5.0
-    }
-}
 
 /// The one file there is to read.
 struct OneFile(Arc<[u8]>);

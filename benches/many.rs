@@ -5,27 +5,17 @@
 //! on from what they meet in directions of chance; in no order. Times are processor time where the system tells it, as Linux
 //! does, and so nearly the same on a busy machine; of several rounds the best counts.
 
-use rt_lang::files::{FileError, FilePath, Files};
 use rt_lang::math::DVec3;
 use rt_lang::render::{Strays, Tracer};
 use rt_lang::scene::{Primitive, Scene, Shape};
-use rt_lang::source::{Source, Sources};
-use rt_lang::{Options, compile};
 use std::sync::Arc;
 use std::time::Instant;
+
+mod scenes;
 
 const ROUNDS: usize = 7;
 const RAYS: usize = 400_000;
 const BOUNCES: u32 = 5;
-
-/// There is no other file to read.
-struct Alone;
-
-impl Files for Alone {
-    fn read(&self, _: &FilePath, _: usize) -> Result<Arc<[u8]>, FileError> {
-        Ok(Arc::new([]))
-    }
-}
 
 #[expect(clippy::print_stdout, reason = "a table for a person is what this makes")]
 fn main() {
@@ -84,10 +74,7 @@ fn balls(count: u32) -> Scene {
          sky {{ }}
          camera {{ from: (0, 0.3 * {side:?}, 0.7 * {side:?})m, look: (0, 0, 0)m }}"
     );
-    let mut sources = Sources::default();
-    let main = sources.add(Source::new("many.rt", text));
-    let compiled = compile(&Alone, &mut sources, main, &Options::default());
-    let mut scene = compiled.scene.unwrap_or_else(|| panic!("{:#?}", compiled.diagnostics));
+    let mut scene = scenes::scene(&text);
     let (mut random, mut all) = (Random(1), vec![]);
     let ball = scene.primitives[0].clone();
     for i in 0..count {

@@ -3,17 +3,14 @@
 //!
 //! What other work on the machine takes, it takes from all of them: compare the ratios.
 
-use rt_lang::files::{FileError, FilePath, Files};
 use rt_lang::render::{self, Level};
 use rt_lang::scene::Scene;
-use rt_lang::source::{Source, Sources};
-use rt_lang::{Options, compile};
-use std::sync::Arc;
 use std::time::Instant;
 
 #[path = "../tests/oracle/mod.rs"]
 #[allow(unused, reason = "tests use more of it")]
 mod oracle;
+mod scenes;
 
 const ROUNDS: usize = 5;
 const SAMPLES: u32 = 16;
@@ -36,19 +33,8 @@ const ROOM: &str = "
     render { size: (320, 240), bounces: 7, filter: box }
 ";
 
-/// There is no other file to read.
-struct Alone;
-
-impl Files for Alone {
-    fn read(&self, _: &FilePath, _: usize) -> Result<Arc<[u8]>, FileError> {
-        Ok(Arc::new([]))
-    }
-}
-
 fn main() {
-    let mut sources = Sources::default();
-    let main = sources.add(Source::new("room.rt", ROOM));
-    let scene = compile(&Alone, &mut sources, main, &Options::default()).scene.expect("the room compiles");
+    let scene = scenes::scene(ROOM);
     let levels: Vec<Level> = Level::ALL.into_iter().filter(|level| level.is_there()).collect();
     let mut times = vec![vec![]; levels.len() + 1];
     for _ in 0..ROUNDS {

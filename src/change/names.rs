@@ -30,8 +30,7 @@ pub fn names(before: &str, after: &str) -> Vec<String> {
             for (old, new) in old.iter().zip(new).filter(|pair| !same(pair)) {
                 let (gone, come) = differing(old.text, new.text);
                 // What is gone has no name in the new text.
-                let names = new.named(&come);
-                found.extend(if names.is_empty() { old.named(&gone) } else { names });
+                found.extend(if come.is_empty() { old.named(&gone) } else { new.named(&come) });
             }
         }
         (gone, []) => found.extend(gone.iter().flat_map(Part::whole)),

@@ -72,11 +72,13 @@ impl Control {
         Progress { done: self.done.load(Relaxed), total: self.total.load(Relaxed) }
     }
 
-    pub(super) fn plan(&self, paths: u64) {
+    /// Says that so many more paths will be traced.
+    pub fn plan(&self, paths: u64) {
         self.total.fetch_add(paths, Relaxed);
     }
 
-    pub(super) fn finish(&self, paths: u64) {
+    /// Says that so many more paths have been traced.
+    pub fn finish(&self, paths: u64) {
         self.done.fetch_add(paths, Relaxed);
     }
 }

@@ -15,7 +15,7 @@
 //! | [`light`] | where light comes from |
 //! | [`media`] | which dielectric a path is inside of |
 //! | `caustic` | light that comes by mirrors and glass |
-//! | `path`, `queue` | paths, step by step, and those that wait for a lane |
+//! | `path`, `queue`, `jobs` | paths, step by step, and those that wait for a lane |
 //! | [`observer`] | watching paths |
 //! | [`apart`] | a pixel taken apart: light by light, and by kinds of paths |
 //! | [`first`] | what camera rays meet first |
@@ -43,6 +43,7 @@ pub mod feedback;
 pub mod film;
 pub mod first;
 mod functions;
+mod jobs;
 pub mod lanes;
 pub mod level;
 pub mod light;
@@ -76,6 +77,7 @@ pub use control::{Cancelled, Control, Progress};
 use exact::SurfacePoint;
 pub use film::{Film, Window};
 use film::{MOST_SAMPLES, Pixel};
+use jobs::{Glimpse, Single, Tile};
 use lanes::{Lanes, Mask, One, Word};
 pub use level::Level;
 use light::Lights;
@@ -84,7 +86,7 @@ use media::Dielectrics;
 pub use observer::Observer;
 use path::Sharing;
 pub use prepass::Prepass;
-use queue::{Arrived, Job, Jobs, View};
+use queue::{Jobs, View};
 use rayon::prelude::*;
 use shape::{Face, Hits, Points, decode, slot};
 use space::Space;
@@ -335,15 +337,12 @@ impl<'s> Tracer<'s> {
     ///
     /// If the control cancels.
     pub fn look(&self, step: u32, control: &Control) -> Result<Vec<Option<Rgb>>, Cancelled> {
-        let [width, height] = self.scene.trace.size;
-        let columns = width.div_ceil(step);
+        let [_, height] = self.scene.trace.size;
         let view = View::new(&self.eye, self.scene.trace.seed);
         let rows: Vec<Vec<Option<Rgb>>> = (0..height.div_ceil(step))
             .into_par_iter()
             .map(|row| {
-                let radiance = vec![None; columns as usize];
-                let y = (row * step + step / 2).min(height - 1);
-                let mut row = Glimpse { y, step, width, next: 0, radiance, unit: self.unit, control };
+                let mut row = Glimpse::new(row, step, self.scene.trace.size, self.unit, control);
                 self.trace(&view, &mut row);
                 row.radiance
             })
@@ -353,8 +352,7 @@ impl<'s> Tracer<'s> {
 
     /// What one sample adds to its pixel, watched. Traced in one lane, to the same bits as in many.
     pub fn sample<O: Observer>(&self, x: u32, y: u32, sample: u32, observer: &mut O) -> Sampled {
-        let job = Some(Job { x, y, sample, pixel: 0 });
-        let mut single = Single { job, unit: self.unit, sampled: Sampled::default() };
+        let mut single = Single::new(x, y, sample, self.unit);
         let view = View::new(&self.eye, self.scene.trace.seed);
         path::trace(One, self, &view, &mut single, observer);
         single.sampled
@@ -422,109 +420,6 @@ impl level::Task for Trace<'_, '_> {
     fn run<L: Lanes>(self, l: L) {
         path::trace(l, self.tracer, self.view, self.jobs, &mut ());
     }
-}
-
-/// The paths of a tile, pixel by pixel.
-struct Tile<'a> {
-    window: Window,
-    samples: std::ops::Range<u32>,
-    /// Pixel and sample that come next.
-    next: (u32, u32),
-    scale: f64,
-    unit: f64,
-    pixels: Vec<Pixel>,
-    control: &'a Control,
-}
-
-impl Tile<'_> {
-    fn new(
-        window: Window,
-        samples: std::ops::Range<u32>,
-        scale: f64,
-        unit: f64,
-        control: &Control,
-    ) -> Tile<'_> {
-        let pixels = vec![Pixel::default(); window.pixels()];
-        Tile { window, next: (0, samples.start), samples, scale, unit, pixels, control }
-    }
-}
-
-impl Jobs for Tile<'_> {
-    fn next(&mut self) -> Option<Job> {
-        let (pixel, sample) = self.next;
-        if pixel as usize >= self.pixels.len() {
-            return None;
-        }
-        self.next.1 += 1;
-        if self.next.1 >= self.samples.end {
-            self.next = (pixel + 1, self.samples.start);
-            self.control.rest();
-            self.control.finish(u64::from(self.samples.end - self.samples.start));
-            if self.control.is_cancelled() {
-                self.next.0 = u32::MAX;
-            }
-        }
-        let (x, y) = (pixel % self.window.width, pixel / self.window.width);
-        Some(Job { x: self.window.x + x, y: self.window.y + y, sample, pixel })
-    }
-
-    fn finish(&mut self, arrived: &Arrived) {
-        let pixel = &mut self.pixels[arrived.pixel as usize];
-        let weight = f64::from(arrived.weight);
-        pixel.add(weight * self.unit * wide(arrived.radiance), self.scale);
-        pixel.cover(arrived.open, weight);
-    }
-}
-
-/// A row of a first look.
-struct Glimpse<'a> {
-    y: u32,
-    step: u32,
-    width: u32,
-    next: u32,
-    radiance: Vec<Option<Rgb>>,
-    unit: f64,
-    control: &'a Control,
-}
-
-impl Jobs for Glimpse<'_> {
-    fn next(&mut self) -> Option<Job> {
-        let pixel = self.next;
-        if pixel as usize >= self.radiance.len() || self.control.is_cancelled() {
-            return None;
-        }
-        self.next += 1;
-        let x = (pixel * self.step + self.step / 2).min(self.width - 1);
-        Some(Job { x, y: self.y, sample: 0, pixel })
-    }
-
-    fn finish(&mut self, arrived: &Arrived) {
-        let radiance = f64::from(arrived.weight) * self.unit * wide(arrived.radiance);
-        self.radiance[arrived.pixel as usize] = (!arrived.open).then_some(radiance);
-    }
-}
-
-/// One path.
-struct Single {
-    job: Option<Job>,
-    unit: f64,
-    sampled: Sampled,
-}
-
-impl Jobs for Single {
-    fn next(&mut self) -> Option<Job> {
-        self.job.take()
-    }
-
-    fn finish(&mut self, arrived: &Arrived) {
-        let weight = f64::from(arrived.weight);
-        let radiance = weight * self.unit * wide(arrived.radiance);
-        self.sampled = Sampled { radiance, weight, open: arrived.open };
-    }
-}
-
-fn wide([r, g, b]: [f32; 3]) -> Rgb {
-    Rgb::new(f64::from(r), f64::from(g), f64::from(b))
 }
 
 /// The radiance of the brightest thing there is, in its brightest channel; of a point its intensity.

@@ -91,7 +91,7 @@ impl Jobs for Row {
     }
 
     fn finish(&mut self, arrived: &Arrived) {
-        self.radiance[arrived.pixel as usize] = super::wide(arrived.radiance);
+        self.radiance[arrived.pixel as usize] = super::jobs::wide(arrived.radiance);
     }
 
     fn cut(&mut self, throughput: Rgb) {

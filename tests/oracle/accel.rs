@@ -3,9 +3,9 @@
 //! Two surfaces at equal distance are told apart by their index, so the answer does not depend on the shape of the
 //! hierarchy.
 
-use super::bvh::Hierarchy;
 use super::shape::{Face, Place, Ray, Tree, intersect};
 use rt_lang::math::DVec3;
+use rt_lang::render::exact::Hierarchy;
 use rt_lang::scene::shape::Bounds;
 use rt_lang::scene::{Primitive, PrimitiveId, Shape};
 use std::collections::BTreeMap;

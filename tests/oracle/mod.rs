@@ -1,7 +1,8 @@
 //! An integrator to hold the tracer's against: one path at a time, in double precision, as readable as it gets.
 //!
-//! It shares with the tracer what a scene is, colours and mathematics, and nothing else: not the sampler, the film, the
-//! equations of surfaces, nor how light is found. So where the two agree, neither errs alone. It was written first; where
+//! It shares with the tracer what a scene is, colours and mathematics, the handle that stops it, and the hierarchy of
+//! boxes, which a test here holds to a list; nothing else: not the sampler, the film, the equations of surfaces, nor how
+//! light is found. So where the two agree, neither errs alone. It was written first; where
 //! the tracer learns something new, this learns it too, in its own way.
 //!
 //! ```text
@@ -11,7 +12,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`shape`] | where a ray meets a surface, without epsilons |
-//! | `accel`, `bvh` | which surface it meets first |
+//! | `accel` | which surface it meets first |
 //! | `camera`, [`sampler`], `warp` | rays of camera paths; random numbers; directions drawn from them |
 //! | [`texture`] | what colour they have at a point |
 //! | [`bsdf`] | how surfaces scatter light |
@@ -21,7 +22,6 @@
 //! | [`observer`] | watching paths |
 //! | [`film`] | exact sums |
 //! | `prepass` | exposure and the film's scale |
-//! | [`control`] | cancelling and progress |
 //!
 //! The same scene gives the same bits for any number of threads, and a window the same bits as that part of the
 //! whole: random numbers are a function of pixel and sample, and sums are exact.
@@ -30,9 +30,7 @@
 
 mod accel;
 pub mod bsdf;
-mod bvh;
 mod camera;
-pub mod control;
 pub mod film;
 mod integrator;
 pub mod light;
@@ -50,7 +48,6 @@ mod warp;
 use accel::Accel;
 use bsdf::{Bsdf, Coat};
 use camera::Eye;
-pub use control::{Cancelled, Control, Progress};
 pub use film::{Film, Window};
 use film::{MOST_SAMPLES, Pixel};
 use integrator::{Arrived, Scratch, Sharing};
@@ -60,6 +57,7 @@ pub use observer::Observer;
 pub use prepass::Prepass;
 use rayon::prelude::*;
 use rt_lang::color::Rgb;
+pub use rt_lang::render::{Cancelled, Control, Progress};
 use rt_lang::scene::{Material, Paint, Scene, Target, Tonemap};
 use sampler::Sampler;
 use shape::{Place, Ray, SurfacePoint};
@@ -88,17 +86,6 @@ pub struct Rendered {
     pub noise: f64,
     /// Whether the target was met: false only where a noise target was not, with [`MOST_NOISE_SAMPLES`].
     pub target_met: bool,
-}
-
-/// About how many bytes it takes to trace the whole of a scene: its surfaces, the hierarchy over them while it is
-/// built, the film, and the picture that is made of it.
-pub fn memory(scene: &Scene) -> u64 {
-    let surfaces = scene.primitives.len() as u64;
-    let surface = (size_of::<rt_lang::scene::Primitive>() + bvh::BYTES_A_SURFACE) as u64;
-    // A pass over the picture is held beside the sums that it is added to.
-    let pixel = (2 * size_of::<Pixel>() + size_of::<Rgb>()) as u64;
-    let [width, height] = scene.trace.size.map(u64::from);
-    surfaces * surface + width * height * pixel
 }
 
 /// How the film will be shown, which is what a noise target speaks of.

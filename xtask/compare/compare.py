@@ -1,299 +1,223 @@
 """Renders the same scenes with `rtc` and with other renderers, in turns, and prints what each took.
 
-Usage: compare.py RTC PYTHON ROOT DESK ROUNDS [SCENE…]
+Usage: compare.py RTC PYTHON DESK ROUNDS BUDGET [SCENE…]
 
-PYTHON is one that has Mitsuba and NumPy, DESK a folder to write in. All rows of a table come from one run; a ratio is
-the median over the rounds of the pairs' ratios, with the least and the greatest behind it.
+PYTHON is one that has Mitsuba and NumPy, DESK a folder to write in. A scene's rounds end when there were ROUNDS, or
+after BUDGET seconds. All rows of a table come from one run, in which the renderers took turns; a ratio is the median
+over the rounds of the ratios within each, with the least and the greatest behind it, so that a busy machine harms it
+little.
 
-Wall time is that of the whole process, from its start to the written picture, text read and picture encoded. For
-Mitsuba, whose start compiles a kernel, the second picture of a process is timed too ("warm"): only tracing.
-The error is that of the picture against one with many samples of another seed: relMSE is the mean of
-(x − r)² / (r² + 0.01), "median" the median of the pixels of the same.
+Wall time is that of the whole process, from its start to the written picture, text read and picture encoded; processor
+time that of all its threads together. For Mitsuba, whose start loads libraries and compiles kernels, tracing alone is
+told too ("warm"). The error is that of a picture against one with many samples of another seed, which is kept between
+runs: relMSE is the mean of (x − r)² / (r² + 0.01), "median" the median of the pixels of the same.
 """
 
-import json
 import os
-import re
+import platform
 import statistics
-import subprocess
 import sys
 import time
 
 import numpy as np
 
-RTC, PYTHON, ROOT, DESK, ROUNDS = sys.argv[1:6]
+from runs import THREADS, Desk, errors
+from scenes import LLVM, POVRAY, SCENES
+
+RTC, PYTHON, DESK, ROUNDS, BUDGET = sys.argv[1:6]
 WANTED = sys.argv[6:]
-ROUNDS = int(ROUNDS)
-HERE = os.path.dirname(os.path.abspath(__file__))
-THREADS = 2
+ROUNDS, BUDGET = int(ROUNDS), float(BUDGET)
+DESK = Desk(RTC, PYTHON, DESK)
+STRAIGHT = "rtc, straight"
+# Most seconds of a picture of the ladder on which the time to a peer's error is found.
+LONGEST = 30
 
 
-class Scene:
-    """A scene, how it is rendered, and with whom it is compared."""
-
-    def __init__(self, name, path, samples, flags=(), sets=(), peers=(), reference=4096, export=()):
-        self.name, self.path, self.samples = name, path, samples
-        self.flags, self.sets, self.peers = list(flags), list(sets), list(peers)
-        self.reference, self.export = reference, list(export)
+def number(value):
+    return "" if value is None else f"{value:.3g}"
 
 
-def example(name):
-    return os.path.join(ROOT, "examples", name)
-
-
-def own(name):
-    return os.path.join(HERE, name)
-
-
-SIZE = ["--size", "640x480"]
-SCENES = [
-    Scene(
-        "room",
-        os.path.join(ROOT, "tests/references/room.rt"),
-        64,
-        flags=SIZE,
-        peers=["llvm_ad_rgb", "scalar_rgb"],
-        reference=8192,
-    ),
-    *(
-        Scene(
-            f"balls-{count}",
-            own("balls.rt"),
-            16,
-            sets=[f"count={count}"],
-            peers=["povray", "llvm_ad_rgb"] if count <= 1000 else ["povray"],
-            reference=256,
-            export=["--approximate"],
-        )
-        for count in (1000, 100_000, 1_000_000)
-    ),
-    Scene(
-        "hyperboloids",
-        own("hyperboloids.rt"),
-        16,
-        peers=["povray", "llvm_ad_rgb"],
-        reference=1024,
-        export=["--approximate", "--tessellate", "64"],
-    ),
-    Scene(
-        "sphereflake",
-        example("sphereflake.rt"),
-        16,
-        flags=SIZE,
-        peers=["llvm_ad_rgb"],
-        reference=512,
-        export=["--approximate"],
-    ),
-    Scene(
-        "one-weekend",
-        example("one-weekend.rt"),
-        10,
-        flags=["--size", "400x225"],
-        peers=["llvm_ad_rgb"],
-        reference=1024,
-        export=["--approximate"],
-    ),
-    Scene("lights", own("lights.rt"), 16, peers=["llvm_ad_rgb"], reference=1024, export=["--approximate"]),
-]
-
-
-def run(command):
-    """Runs a process to its end: its output, its seconds and its most memory in MB.
-
-    A small process between tells the memory of this child alone.
-    """
-    teller = (
-        "import json,resource,subprocess,sys,time\n"
-        "s=time.perf_counter()\n"
-        "p=subprocess.run(sys.argv[1:],capture_output=True,text=True)\n"
-        "w=time.perf_counter()-s\n"
-        "m=resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss/1024\n"
-        "print(json.dumps([p.returncode,p.stdout,p.stderr,w,m]))\n"
-    )
-    command = list(map(str, command))
-    told = subprocess.run([sys.executable, "-c", teller, *command], capture_output=True, text=True, check=True)
-    code, out, err, wall, mb = json.loads(told.stdout)
-    if code:
-        sys.exit(f"{' '.join(command)}\nended with {code}:\n{out}{err}")
-    return out, wall, mb
-
-
-def pfm(path):
-    with open(path, "rb") as file:
-        assert file.readline() == b"PF\n"
-        width, height = map(int, file.readline().split())
-        assert float(file.readline()) < 0
-        return np.frombuffer(file.read(), "<f4").reshape(height, width, 3)[::-1].astype(np.float64)
-
-
-def errors(picture, reference):
-    squares = ((picture - reference) ** 2 / (reference**2 + 0.01)).mean(axis=2)
-    return float(squares.mean()), float(np.median(squares))
-
-
-def path(scene, ending):
-    return os.path.join(DESK, f"{scene.name}.{ending}")
-
-
-def ours(scene, samples, seed, flags=()):
-    out = path(scene, "pfm")
-    sets = [flag for value in scene.sets for flag in ("--set", value)]
-    command = [RTC, "build", "--quiet", scene.path, *scene.flags, *sets, *flags]
-    command += ["-j", THREADS, "--samples", samples, "--seed", seed, "-o", out]
-    _, wall, mb = run(command)
-    return {"wall": wall, "mb": mb, "picture": pfm(out)}
-
-
-def exported(scene, ending, sets=(), flags=()):
-    """The scene for another renderer."""
-    out = path(scene, ending)
-    values = [flag for value in [*scene.sets, *sets] for flag in ("--set", value)]
-    run([RTC, "export", scene.path, *values, *flags, "-o", out])
-    if ending == "xml" and "--size" in scene.flags:
-        width, height = scene.flags[scene.flags.index("--size") + 1].split("x")
-        text = open(out).read()
-        for name, value in (("width", width), ("height", height)):
-            text, found = re.subn(
-                rf'(<integer name="{name}" value=")\d+', rf"\g<1>{value}", text, count=1
-            )
-            assert found == 1, name
-        open(out, "w").write(text)
-    return out
-
-
-def mitsuba(scene, variant, export, samples, seed):
-    out = path(scene, "npy")
-    script = os.path.join(HERE, "peer.py")
-    _, wall, mb = run([PYTHON, script, variant, THREADS, samples, seed, export, out])
-    with open(out + ".json") as file:
-        times = json.load(file)
-    return {"wall": wall - times["second"], "warm": times["second"], "mb": mb, "picture": np.load(out)}
-
-
-def povray(scene, export, samples):
-    side = round(samples**0.5)
-    size = [] if "--size" not in scene.flags else scene.flags[1].split("x")
-    width, height = size or (640, 480)
-    # A grid of side × side rays in every pixel, without a test whether they are wanted.
-    command = ["povray", f"+W{width}", f"+H{height}", "+A0.0", "+AM1", f"+R{side}", "-D", "-GA", "+FE"]
-    command += [f"+WT{THREADS}", f"+I{export}", f"+O{path(scene, 'pov.exr')}"]
-    _, wall, mb = run(command)
-    return {"wall": wall, "mb": mb}
+def table(head, rows):
+    print("\n| " + " | ".join(head) + " |\n|" + "---|" * len(head))
+    for row in rows:
+        print("| " + " | ".join(row) + " |")
+    sys.stdout.flush()
 
 
 def spread(values):
     return f"{statistics.median(values):.3g} ({min(values):.3g}–{max(values):.3g})"
 
 
-def compare(scene):
-    print(f"\n## {scene.name}, {scene.samples} samples, {THREADS} threads, {ROUNDS} rounds\n", flush=True)
-    reference = ours(scene, scene.reference, 1001)["picture"]
-    pixels = reference.shape[0] * reference.shape[1]
-    exports = {}
-    if any(peer != "povray" for peer in scene.peers):
-        exports["xml"] = exported(scene, "xml", flags=scene.export)
-    if "povray" in scene.peers:
-        exports["pov"] = exported(scene, "pov", ["straight=true"], ["--approximate"])
-    rows = {name: [] for name in ("rtc", *scene.peers)}
-    if "povray" in scene.peers:
-        rows["rtc, straight"] = []
+def middle(found, what):
+    values = [row[what] for row in found if what in row]
+    return statistics.median(values) if values else None
+
+
+def rounds(work, budget=BUDGET):
+    """Does something for each seed until there were enough, or too little time is left for another."""
+    start = time.monotonic()
     for seed in range(1, ROUNDS + 1):
-        rows["rtc"].append(ours(scene, scene.samples, seed))
-        for peer in scene.peers:
-            if peer == "povray":
-                rows[peer].append(povray(scene, exports["pov"], scene.samples))
-                rows["rtc, straight"].append(ours(scene, scene.samples, seed, ["--set", "straight=true"]))
-            else:
-                rows[peer].append(mitsuba(scene, peer, exports["xml"], scene.samples, seed))
+        work(seed)
+        spent = time.monotonic() - start
+        if spent + spent / seed > budget:
+            break
 
-    print("| renderer | wall s | warm s | Ms/s | relMSE | median | MB | red, green, blue of the reference's |")
-    print("|---|---|---|---|---|---|---|---|")
+
+def compare(scene):
+    reference = DESK.reference(scene) if scene.reference else None
+    rows, exports = turns(scene)
+    count = len(rows["rtc"])
+    print(f"\n## {scene.name}\n\n{scene.samples} samples, {THREADS} threads, {count} rounds", end="")
+    print(f", load average {os.getloadavg()[0]:.1f}", flush=True)
+    pixels = rows["rtc"][0]["picture"].size / 3
+    lines = []
     for name, found in rows.items():
-        walls = [row["wall"] for row in found]
-        warm = [row.get("warm", row["wall"]) for row in found]
-        rate = pixels * scene.samples / statistics.median(warm) / 1e6
-        cells = [name, f"{statistics.median(walls):.3g}", f"{statistics.median(warm):.3g}", f"{rate:.3g}"]
-        if name in ("povray", "rtc, straight"):
+        wall, cpu, warm, warm_cpu = (middle(found, what) for what in ("wall", "cpu", "warm", "warm_cpu"))
+        cells = [name, *map(number, (wall, cpu, warm, warm_cpu))]
+        cells += [number(pixels * scene.samples / 1e6 / seconds) for seconds in (warm or wall, warm_cpu or cpu)]
+        if reference is not None and name not in (POVRAY, STRAIGHT):
+            told = [errors(row["picture"], reference) for row in found]
+            cells += [number(statistics.median(error[i] for error in told)) for i in (0, 1)]
+            mean = np.mean([row["picture"] for row in found], axis=0).mean(axis=(0, 1))
+            colours = ", ".join(f"{value:.3f}" for value in mean / reference.mean(axis=(0, 1)))
+        else:
             cells += ["", ""]
-        else:
-            found_errors = [errors(row["picture"], reference) for row in found]
-            cells += [f"{statistics.median(e[i] for e in found_errors):.3g}" for i in (0, 1)]
-        cells.append(f"{statistics.median(row['mb'] for row in found):.0f}")
-        if "picture" in found[0] and name != "rtc, straight":
-            mean = np.mean([row["picture"] for row in found], axis=0)
-            ratio = mean.mean(axis=(0, 1)) / reference.mean(axis=(0, 1))
-            cells.append(", ".join(f"{value:.3f}" for value in ratio))
-        else:
-            cells.append("")
-        print("| " + " | ".join(cells) + " |", flush=True)
-
-    print()
+            colours = ""
+        lines.append([*cells, f"{middle(found, 'mb'):.0f}", colours])
+    head = ["renderer", "wall s", "cpu s", "warm wall s", "warm cpu s", "Ms/s wall", "Ms/s cpu"]
+    table([*head, "relMSE", "median", "MB", "r, g, b of the reference's"], lines)
+    ratios(scene, rows)
+    loading(scene, rows, exports)
     for peer in scene.peers:
-        if peer == "povray":
-            print("Straight light alone, times as fast as POV-Ray: ", end="")
-            print(spread([b["wall"] / a["wall"] for a, b in zip(rows["rtc, straight"], rows[peer])]))
-            continue
-        pairs = list(zip(rows["rtc"], rows[peer]))
-        print(f"Times as fast as {peer}: wall {spread([b['wall'] / a['wall'] for a, b in pairs])}, ", end="")
-        print(f"warm {spread([b['warm'] / a['wall'] for a, b in pairs])}")
-        sooner(scene, peer, rows[peer], reference)
+        if peer != POVRAY and reference is not None:
+            sooner(scene, peer, rows[peer], reference)
+
+
+def turns(scene):
+    """What everyone took, round by round, and the scene as the others read it."""
+    exports = {}
+    if any(peer != POVRAY for peer in scene.peers):
+        exports["xml"] = DESK.exported(scene, "xml", flags=scene.export)
+    if POVRAY in scene.peers:
+        exports["pov"] = DESK.exported(scene, "pov", ["straight=true"], ["--approximate"])
+    rows = {name: [] for name in ("rtc", *scene.peers)}
+    if POVRAY in scene.peers:
+        rows[STRAIGHT] = []
+
+    def turn(seed):
+        rows["rtc"].append(DESK.ours(scene, scene.samples, seed))
+        for peer in scene.peers:
+            if peer == POVRAY:
+                rows[peer].append(DESK.povray(scene, exports["pov"], scene.samples))
+                straight = DESK.ours(scene, scene.samples, seed, ["--set", "straight=true"])
+                rows[STRAIGHT].append(straight)
+            else:
+                rows[peer].append(DESK.mitsuba(scene, peer, exports["xml"], scene.samples, seed))
+
+    rounds(turn)
+    return rows, exports
+
+
+def ratios(scene, rows):
+    lines = []
+    for peer in scene.peers:
+        mine = rows[STRAIGHT if peer == POVRAY else "rtc"]
+        pairs = list(zip(mine, rows[peer]))
+        cells = [spread([b[what] / a[what] for a, b in pairs]) for what in ("wall", "cpu")]
+        if "warm" in rows[peer][0]:
+            cells += [spread([b["warm" + of] / a[what] for a, b in pairs]) for what, of in (("wall", ""), ("cpu", "_cpu"))]
+        else:
+            cells += ["", ""]
+        lines.append([peer + (", straight light alone" if peer == POVRAY else ""), *cells])
+    table(["times as fast as", "wall", "cpu", "its warm wall", "its warm cpu"], lines)
+
+
+def loading(scene, rows, exports):
+    """Reading the scene: whole processes for a picture of 16×16 at one sample."""
+    mine = DESK.ours(scene, 1, 1, size="16x16")
+    cells = [f"rtc {mine['wall']:.3g} s, {mine['mb']:.0f} MB"]
+    for peer in scene.peers:
+        if peer == POVRAY:
+            took = DESK.povray(scene, exports["pov"], 1, size="16x16")
+            cells.append(f"{peer} {took['wall']:.3g} s, {took['mb']:.0f} MB")
+        else:
+            cells.append(f"{peer} {middle(rows[peer], 'load'):.3g} s without its start")
+    print("\nTo load: " + "; ".join(cells) + ".", flush=True)
 
 
 def sooner(scene, peer, found, reference):
     """How much sooner we have the error that a peer's pictures have, by renders with ever more samples."""
+    theirs = [statistics.median(errors(row["picture"], reference)[i] for row in found) for i in (0, 1)]
     ladder = []
     samples = 1
-    while samples <= scene.reference // 4 and (not ladder or ladder[-1][0] < 20):
-        row = ours(scene, samples, 77)
-        ladder.append((row["wall"], *errors(row["picture"], reference)))
-        samples *= 4
-    for column, what in ((1, "relMSE"), (2, "median")):
-        for row in found[:1]:
-            theirs = errors(row["picture"], reference)[column - 1]
-            wall = reached(ladder, column, theirs)
-            if wall is None:
-                print(f"The {what} {theirs:.3g} of {peer} is not reached within {ladder[-1][0]:.3g} s")
+    while samples <= scene.reference // 4:
+        row = DESK.ours(scene, samples, 77)
+        ladder.append((row["wall"], row["cpu"], *errors(row["picture"], reference)))
+        if row["wall"] > LONGEST or all(ladder[-1][2 + i] <= theirs[i] for i in (0, 1)):
+            break
+        samples *= 2
+    lines = []
+    for i, what in enumerate(("relMSE", "median")):
+        cells = [f"{what} {theirs[i]:.3g}"]
+        for column, of, warm in ((0, "wall", "warm"), (1, "cpu", "warm_cpu")):
+            took = reached(ladder, column, 2 + i, theirs[i])
+            whole, traced = middle(found, of), middle(found, warm)
+            if took is None:
+                cells += [f"> {ladder[-1][column]:.3g}", f"{whole:.3g}", f"{traced:.3g}", ""]
             else:
-                print(
-                    f"The {what} {theirs:.3g} of {peer}, {row['wall']:.3g} s ({row['warm']:.3g} warm): after {wall:.3g} s, "
-                    f"{row['wall'] / wall:.3g} × sooner ({row['warm'] / wall:.3g})"
-                )
+                cells += [f"{took:.3g}", f"{whole:.3g}", f"{traced:.3g}", f"{whole / took:.3g} ({traced / took:.3g})"]
+        lines.append(cells)
+    head = [f"the error of {peer}"]
+    for of in ("wall", "cpu"):
+        head += [f"rtc, {of} s", "it", "warm", "× sooner (than warm)"]
+    table(head, lines)
 
 
-def reached(ladder, column, wanted):
+def reached(ladder, column, error, wanted):
     """The seconds after which an error is reached, between the renders on both sides of it."""
-    for (before, after) in zip(ladder, ladder[1:]):
-        if after[column] <= wanted:
-            if before[column] <= wanted:
-                return before[0]
-            share = np.log(before[column] / wanted) / np.log(before[column] / after[column])
-            return float(np.exp(np.log(before[0]) * (1 - share) + np.log(after[0]) * share))
+    if ladder[0][error] <= wanted:
+        return ladder[0][column]
+    for before, after in zip(ladder, ladder[1:]):
+        if after[error] <= wanted:
+            share = np.log(before[error] / wanted) / np.log(before[error] / after[error])
+            return float(np.exp(np.log(before[column]) * (1 - share) + np.log(after[column]) * share))
     return None
 
 
 def start():
-    """A whole process for a picture of 16×16 at one sample."""
-    scene = SCENES[0]
-    walls = []
-    for _ in range(max(ROUNDS, 20)):
-        out = path(scene, "png")
-        _, wall, _ = run(
-            [RTC, "build", "--quiet", scene.path, "--size", "16x16", "--samples", 1, "-o", out]
-        )
-        walls.append(wall * 1000)
-    print(f"Start, 16×16 at one sample: {spread(walls)} ms")
+    """Whole processes for a picture of 16×16 at one sample, and two threads beside one."""
+    room = SCENES[0]
+    mine = [DESK.ours(room, 1, 1, size="16x16") for _ in range(20)]
+    xml = DESK.exported(room, "xml", flags=room.export)
+    mitsuba = [DESK.mitsuba(room, LLVM, xml, 1, 1, size="16x16") for _ in range(3)]
+    hyperboloids = next(scene for scene in SCENES if scene.name == "hyperboloids")
+    pov = DESK.exported(hyperboloids, "pov", ["straight=true"], ["--approximate"])
+    povray = [DESK.povray(hyperboloids, pov, 1, size="16x16") for _ in range(5)]
+    print("\n## start\n\nWhole processes for a picture of 16×16 at one sample.")
+    rows = [("the room by rtc", mine), (f"the room by {LLVM}", mitsuba), (f"hyperboloids by {POVRAY}", povray)]
+    times = [[name, *(spread([row[of] * 1000 for row in found]) for of in ("wall", "cpu"))] for name, found in rows]
+    table(["", "wall ms", "cpu ms"], times)
+    pairs = []
+    rounds(lambda seed: pairs.append([DESK.ours(room, 16, seed, threads=threads) for threads in (1, 2)]), 60)
+    print("\nThe room at 16 samples with two threads, times as fast as with one, of", len(pairs), "rounds: wall", end=" ")
+    print(f"{spread([one['wall'] / two['wall'] for one, two in pairs])}; processor seconds of two over one", end=" ")
+    print(f"{spread([two['cpu'] / one['cpu'] for one, two in pairs])}.", flush=True)
 
 
 def main():
-    unknown = set(WANTED) - {scene.name for scene in SCENES} - {"start"}
+    names = ["start", *(scene.name for scene in SCENES)]
+    unknown = set(WANTED) - set(names)
     if unknown:
-        sys.exit(f"no scene is called {', '.join(sorted(unknown))}; there are start, "
-                 + ", ".join(scene.name for scene in SCENES))
+        sys.exit(f"no scene is called {', '.join(sorted(unknown))}; there are {', '.join(names)}")
+    models = [line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")]
+    print(f"{len(models)} processors: {models[0] if models else platform.processor()}", flush=True)
+    began = time.monotonic()
     if not WANTED or "start" in WANTED:
         start()
     for scene in SCENES:
         if not WANTED or scene.name in WANTED:
             compare(scene)
+    print(f"\n{(time.monotonic() - began) / 60:.1f} minutes in all.")
 
 
 main()

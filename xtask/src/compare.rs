@@ -7,15 +7,22 @@ use std::process::Command;
 /// Rounds, unless `--rounds` says so.
 const ROUNDS: u32 = 5;
 
+/// Seconds for the rounds of a scene, unless `--budget` says so.
+const BUDGET: u32 = 90;
+
 /// Renders scenes in turns with the peers, and prints the tables.
 pub fn compare(arguments: &[String]) -> Outcome {
-    let (rounds, scenes) = match arguments {
-        [flag, rounds, scenes @ ..] if flag == "--rounds" => (rounds.parse().ok(), scenes),
-        scenes => (Some(ROUNDS), scenes),
-    };
-    let Some(rounds) = rounds.filter(|rounds| *rounds > 0) else {
-        return Err("--rounds wants a whole number above 0".into());
-    };
+    let (mut rounds, mut budget, mut scenes) = (ROUNDS, BUDGET, arguments);
+    while let [flag, value, rest @ ..] = scenes {
+        let number = match flag.as_str() {
+            "--rounds" => &mut rounds,
+            "--budget" => &mut budget,
+            _ => break,
+        };
+        let whole = value.parse().ok().filter(|whole| *whole > 0);
+        *number = whole.ok_or_else(|| format!("{flag} wants a whole number above 0"))?;
+        scenes = rest;
+    }
     let root = root()?;
     tools::povray()?;
     tools::llvm()?;
@@ -26,6 +33,6 @@ pub fn compare(arguments: &[String]) -> Outcome {
     run(Command::new("cargo").args(["build", "--release", "--quiet", "--bin", "rtc"]).current_dir(&root))?;
     let mut script = Command::new(&python);
     script.arg(root.join("xtask/compare/compare.py")).arg(target.join("release/rtc")).arg(&python);
-    script.arg(&root).arg(&desk).arg(rounds.to_string()).args(scenes);
-    run(script.env("DRJIT_LIBLLVM_PATH", tools::LLVM))
+    script.arg(&desk).arg(rounds.to_string()).arg(budget.to_string()).args(scenes);
+    run(script.env("DRJIT_LIBLLVM_PATH", tools::LLVM).env("PYTHONDONTWRITEBYTECODE", "1"))
 }

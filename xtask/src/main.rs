@@ -1,10 +1,11 @@
 //! What needs more than Rust: `cargo xtask e2e` runs the command on a real terminal, on a full disk, within
-//! little memory, against another renderer, and as the README says.
+//! little memory, against another renderer, in a browser, and as the README says.
 //!
 //! Nothing is skipped quietly. A tool that is missing fails the step that needs it, with its name.
 
 mod compare;
 mod export;
+mod preview;
 mod processors;
 mod readme;
 mod reference;
@@ -29,6 +30,7 @@ const STEPS: &[(&str, Step)] = &[
     ("licences", licences),
     ("reference", reference::agreement),
     ("export", export::agreement),
+    ("preview", preview::checks),
     ("mattes", mattes),
     ("processors", processors::same_bits),
     (ARM, processors::same_bits_on_arm),
@@ -43,9 +45,14 @@ cargo xtask gallery
 
   makes the pictures of docs/gallery anew, in about ten minutes on two cores
 
-cargo xtask compare [--rounds N] [SCENE…]
+cargo xtask compare [--rounds N] [--budget SECONDS] [SCENE…]
 
-  renders scenes in turns with Mitsuba and POV-Ray, on an idle machine, and prints what each took
+  renders scenes in turns with Mitsuba and POV-Ray, best on an idle machine, and prints what each took; the rounds of
+  a scene end when there were enough or its seconds are spent, and references are kept in target/compare
+
+cargo xtask latency [ROUNDS]
+
+  drives the page of `rtc watch` in Chromium, on an idle machine, and prints how long a save takes to be seen
 
 cargo xtask e2e [STEP…]
 
@@ -55,13 +62,14 @@ cargo xtask e2e [STEP…]
   licences   every dependency's licence is one that deny.toml allows
   reference  the room against a converged picture of another renderer (minutes)
   export     exported scenes against Mitsuba (from PyPI) and POV-Ray (povray, of Debian)
+  preview    the page of `rtc watch` in a browser (chromium, of Debian; playwright-core, from npm, which needs node)
   mattes     Cryptomatte by an independent reader (from PyPI)
   processors the same bytes on other x86-64 processors, by emulation (qemu-user)
   arm        the same on an ARM with NEON (gcc-aarch64-linux-gnu, and rustup for its standard library)
   readme     every command of the README, in a fresh clone of HEAD
 
 Without STEP all but arm are run. Needs python3, bash, git and, for full-disk, leave to mount a tmpfs. What else a step needs
-it installs, from Debian or PyPI, or says that it cannot.";
+it installs, from Debian, PyPI or npm, or says that it cannot.";
 
 /// Where things are.
 struct Place {
@@ -79,6 +87,7 @@ fn main() -> ExitCode {
         Some((task, steps)) if task == "e2e" => e2e(steps),
         Some((task, [])) if task == "gallery" => gallery(),
         Some((task, arguments)) if task == "compare" => compare::compare(arguments),
+        Some((task, arguments)) if task == "latency" => preview::latency(arguments),
         _ => Err(USAGE.into()),
     };
     match ended {

@@ -17,6 +17,25 @@ pub fn llvm() -> Outcome {
     at_hand(LLVM, "libllvm19", || Path::new(LLVM).exists())
 }
 
+/// Has a browser at hand.
+pub fn chromium() -> Outcome {
+    // It says its version also where it finds no display.
+    at_hand("chromium", "chromium", || starts("chromium"))
+}
+
+/// Has what drives a browser at hand, in a folder.
+pub fn playwright(folder: &Path) -> Outcome {
+    if !starts("node") || !starts("npm") {
+        return Err("node and npm are needed, and are not there".into());
+    }
+    if folder.join("node_modules/playwright-core/package.json").exists() {
+        return Ok(());
+    }
+    std::fs::create_dir_all(folder).map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
+    let install = ["install", "--silent", "--no-audit", "--no-fund", "--prefix"];
+    run(Command::new("npm").args(install).arg(folder).arg("playwright-core@1.65"))
+}
+
 /// Links programs for ARM.
 pub const ARM_LINKER: &str = "aarch64-linux-gnu-gcc";
 

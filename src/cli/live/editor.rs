@@ -1,7 +1,7 @@
 //! How a place in a file is opened: by a link, or by a command on this machine.
 
 use super::super::Problem;
-use std::path::Path;
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 /// What a click on a place does.
@@ -57,15 +57,19 @@ impl Editor {
     /// Runs the command for a place in one of the files of a scene.
     pub fn open(&self, file: &str, line: u32, column: u32, files: &[String]) -> Result<(), String> {
         let Some(words) = &self.command else { return Err("no command opens places here".into()) };
-        if !files.iter().any(|known| known == file) {
+        let path = absolute(file);
+        if !files.iter().any(|known| absolute(known) == path) {
             return Err(format!("`{file}` is no file of the scene"));
         }
-        let path = std::path::absolute(Path::new(file)).unwrap_or_else(|_| file.into());
         let filled = filled(words, &path.to_string_lossy(), line, column);
         let Some((program, arguments)) = filled.split_first() else { return Ok(()) };
         spawn(Command::new(program).args(arguments))
             .map_err(|error| format!("`{program}` does not start: {error}"))
     }
+}
+
+fn absolute(file: &str) -> PathBuf {
+    std::path::absolute(file).unwrap_or_else(|_| file.into())
 }
 
 /// The words with a place put in; where they do not say where it goes, it comes behind them.
@@ -135,6 +139,7 @@ mod tests {
         let open = Editor::with(LINK.into(), Some("true")).unwrap();
         assert!(open.open("/etc/passwd", 1, 1, &files).is_err());
         assert!(open.open("a.rt", 1, 1, &files).is_ok());
+        assert!(open.open(&absolute("a.rt").to_string_lossy(), 1, 1, &files).is_ok());
     }
 
     #[test]

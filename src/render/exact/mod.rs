@@ -13,6 +13,7 @@ use super::space::{Space, double};
 use crate::math::DVec3;
 use crate::scene::{Primitive, PrimitiveId, Scene, Shape};
 pub(super) use bvh::BYTES_A_THING;
+pub use bvh::Hierarchy;
 use mesh::Tree;
 pub(super) use mesh::uv as mesh_uv;
 use std::collections::BTreeMap;

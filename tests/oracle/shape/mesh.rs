@@ -1,9 +1,9 @@
 //! Triangle meshes: each with a hierarchy of its own in object space, however often it stands in the scene.
 
 use super::{Face, Ray, SurfacePoint};
-use crate::oracle::bvh::Hierarchy;
 use rt_lang::asset::Mesh;
 use rt_lang::math::{DVec2, DVec3};
+use rt_lang::render::exact::Hierarchy;
 use rt_lang::scene::shape::{Bounds, Instance};
 use std::sync::Arc;
 

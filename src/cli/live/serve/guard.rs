@@ -75,7 +75,7 @@ impl Guard {
 
     /// What is wished, if it may be.
     pub fn wish(&self, parts: &Parts) -> Result<Wish, StatusCode> {
-        self.from_here(&parts.headers)?;
+        self.is_ours(&parts.headers)?;
         let wish = self.find(parts.uri.path(), parts.uri.query().unwrap_or(""))?;
         // Every browser says where a socket is asked from.
         if wish == Wish::Socket && !parts.headers.contains_key(header::ORIGIN) {
@@ -88,7 +88,7 @@ impl Guard {
     }
 
     /// Whether host and origin are this server.
-    fn from_here(&self, headers: &HeaderMap) -> Result<(), StatusCode> {
+    fn is_ours(&self, headers: &HeaderMap) -> Result<(), StatusCode> {
         let ours = |host: &str| self.hosts.iter().any(|ours| host.eq_ignore_ascii_case(ours));
         let mut hosts = headers.get_all(header::HOST).iter();
         let host_is_ours = match (hosts.next(), hosts.next()) {

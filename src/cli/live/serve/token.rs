@@ -9,7 +9,9 @@ pub const DIGITS: usize = 32;
 /// is kept there, so that pages that are open find the next run.
 pub fn for_port(port: u16) -> Result<String, getrandom::Error> {
     let kept = std::env::var_os("XDG_RUNTIME_DIR")
-        .map(|folder| PathBuf::from(folder).join("rtc").join(format!("token-{port}")));
+        .map(PathBuf::from)
+        .filter(|folder| folder.is_absolute())
+        .map(|folder| folder.join("rtc").join(format!("token-{port}")));
     if let Some(token) = kept.as_ref().and_then(|path| std::fs::read_to_string(path).ok())
         && is_token(&token)
     {

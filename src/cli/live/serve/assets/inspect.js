@@ -11,6 +11,9 @@ const PATHS = {
   refracted: "refracted",
 };
 
+/// Characters of a file's name that are shown.
+const MOST_NAME = 18;
+
 /// The panel. `on` has `ask(x, y)` and `mark(pixel or null)`.
 export class Inspector {
   constructor(on) {
@@ -109,9 +112,11 @@ function uses(all) {
   return element("ol", { class: "uses" }, ...all.map((use) => element("li", {}, short(use), element("code", {}, use.text))));
 }
 
-/// The file's name and line; the rest is in the title.
+/// The file's name, not too much of it, and the line; the rest is in the title.
 function short({ file, start }) {
-  return place({ file, line: start.line, column: start.column }, `${file.split(/[\\/]/).pop()}:${start.line}`);
+  const name = file.split(/[\\/]/).pop();
+  const brief = name.length > MOST_NAME ? `${name.slice(0, MOST_NAME / 2)}…${name.slice(-MOST_NAME / 2)}` : name;
+  return place({ file, line: start.line, column: start.column }, `${brief}:${start.line}`);
 }
 
 function shares(all, describe) {

@@ -42,11 +42,10 @@ const link = new Link({
     showStatus(status);
     showMessages(status, link.film);
     params.update(status.params);
-    view.window = status.crop;
+    showWindow(status.crop);
     part("pause").setAttribute("aria-pressed", String(status.state === "paused"));
     showCropping();
     develop();
-    view.draw();
   },
   film(film) {
     view.show(film);
@@ -86,7 +85,6 @@ function develop() {
   if (JSON.stringify(look) === JSON.stringify(view.look)) return;
   view.look = look;
   view.develop();
-  view.draw();
 }
 
 function signed(v) {
@@ -128,8 +126,7 @@ const hand = hold(view, {
     showUnder(view, pixel);
   },
   window(rectangle, done) {
-    view.window = rectangle;
-    view.draw();
+    showWindow(rectangle);
     if (!done) return;
     hand.cropping = false;
     crop(rectangle[2] > 0 && rectangle[3] > 0 ? rectangle : null);
@@ -139,9 +136,14 @@ const hand = hold(view, {
 function crop(window) {
   link.send({ type: "crop", window });
   if (state.status) state.status.crop = window;
+  showWindow(window);
+  showCropping();
+}
+
+function showWindow(window) {
+  if (String(window) === String(view.window)) return;
   view.window = window;
   view.draw();
-  showCropping();
 }
 
 function toggleCrop() {
@@ -170,7 +172,6 @@ function compareBy(mode) {
   view.compare = mode;
   part("compare").querySelector(`[value=${mode}]`).checked = true;
   view.develop();
-  view.draw();
   placeDivider();
 }
 

@@ -54,6 +54,8 @@ export class View {
     this.mark = null;
     this.window = null;
     this.lit = null;
+    /// What is to be done before the next frame of the display: nothing, drawing, and developing what changed or all.
+    this.due = { drawing: false, developing: false, all: false };
     new ResizeObserver(() => this.resize()).observe(stage);
   }
 
@@ -61,21 +63,35 @@ export class View {
   show(film) {
     const first = !this.film || this.film.size.some((side, i) => side !== film.size[i]);
     this.film = film;
-    this.develop(false);
-    if (first || this.fitted) this.fit();
+    this.due.developing = true;
+    if (first) this.fit();
     else this.draw();
   }
 
   /// Develops otherwise from now on.
-  develop(all = true) {
-    if (!this.film) return;
+  develop() {
+    this.due.developing = true;
+    this.due.all = true;
+    this.draw();
+  }
+
+  /// Draws with the next frame of the display, once for all that has changed until then.
+  draw() {
+    if (this.due.drawing) return;
+    this.due.drawing = true;
+    requestAnimationFrame(() => {
+      const { developing, all } = this.due;
+      this.due = { drawing: false, developing: false, all: false };
+      if (developing && this.film) this.developNow(all);
+      this.drawNow();
+    });
+  }
+
+  developNow(all) {
     const paint = painter(this.look);
     const differs = this.pinned && this.compare === "difference" && this.pinned.fits(this.film.size, this.film.step);
-    if (differs) {
-      this.plates.now.develop(this.film, (film, area, out) => difference(film, this.pinned, area, out, this.look.stops), all);
-    } else {
-      this.plates.now.develop(this.film, paint, all);
-    }
+    const subtract = (film, area, out) => difference(film, this.pinned, area, out, this.look.stops);
+    this.plates.now.develop(this.film, differs ? subtract : paint, all || differs !== this.differs);
     if (this.pinned && !differs) this.plates.pinned.develop(this.pinned, paint, all);
     this.differs = differs;
   }
@@ -85,7 +101,6 @@ export class View {
     this.pinned = on && this.film ? this.film.copy() : null;
     this.flipped = false;
     this.develop();
-    this.draw();
   }
 
   resize() {
@@ -95,8 +110,9 @@ export class View {
     if (this.stage.width === width && this.stage.height === height) return;
     this.stage.width = width;
     this.stage.height = height;
+    // That has emptied it, and frames are drawn before sizes are told.
     if (this.fitted) this.fit();
-    else this.draw();
+    this.drawNow();
   }
 
   /// The whole picture, as large as it goes.
@@ -166,7 +182,7 @@ export class View {
     this.draw();
   }
 
-  draw() {
+  drawNow() {
     const { context, stage, film } = this;
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.clearRect(0, 0, stage.width, stage.height);
@@ -191,7 +207,7 @@ export class View {
   paste(plate, exact) {
     const { film, canvas } = plate;
     this.context.imageSmoothingEnabled = film.step > 1 || !exact;
-    this.context.imageSmoothingQuality = "high";
+    this.context.imageSmoothingQuality = this.zoom < 1 ? "high" : "low";
     this.context.drawImage(canvas, 0, 0, film.width * film.step, film.height * film.step);
   }
 
