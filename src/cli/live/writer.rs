@@ -13,10 +13,6 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 pub struct Page {
     /// The picture.
     pub frame: Arc<Frame>,
-    /// How it came about.
-    pub facts: Facts,
-    /// Whether parts of it may be transparent.
-    pub transparent: bool,
     /// What to say when it is written.
     pub done: Option<String>,
 }
@@ -68,7 +64,7 @@ fn next(slot: &(Mutex<Option<Page>>, Condvar)) -> Page {
 }
 
 fn write(page: &Page, targets: &[Target], depth: Depth, interrupt: &Interrupt) -> Result<(), Problem> {
-    let picture = picture(&page.frame, page.transparent);
+    let picture = picture(&page.frame);
     for target in targets {
         if let Some(reason) = target.format.refuses(picture.size) {
             return Err(Problem::new(reason.to_string()));
@@ -82,7 +78,7 @@ fn write(page: &Page, targets: &[Target], depth: Depth, interrupt: &Interrupt) -
 }
 
 /// The picture of a frame of full size.
-pub fn picture(frame: &Frame, transparent: bool) -> Picture {
+pub fn picture(frame: &Frame) -> Picture {
     let [width, height] = frame.size;
     let [columns, _] = frame.held();
     let at = |x: u32, y: u32| &frame.pixels[((y / frame.step) * columns + x / frame.step) as usize];
@@ -98,5 +94,5 @@ pub fn picture(frame: &Frame, transparent: bool) -> Picture {
         pixels: pixels.collect(),
         alpha: None,
     };
-    if transparent { whole.with_alpha(|x, y| f64::from(at(x, y)[4])) } else { whole }
+    if frame.transparent { whole.with_alpha(|x, y| f64::from(at(x, y)[4])) } else { whole }
 }

@@ -37,10 +37,13 @@ export class Inspector {
     await this.ask();
   }
 
-  /// Asks again, as the picture now shows another text.
-  refresh(film) {
-    if (!this.pixel || film.generation === this.generation) return;
-    this.generation = film.generation;
+  /// Asks again where the picture now shows another text, has twice the samples, or is done.
+  refresh(film, done) {
+    const { generation, step } = film;
+    const samples = step === 1 ? film.samples[0] : 0;
+    const more = done ? samples !== this.samples : samples >= 2 * this.samples && samples > 0;
+    if (!this.pixel || (generation === this.generation && !more)) return;
+    Object.assign(this, { generation, samples });
     this.ask();
   }
 

@@ -44,15 +44,17 @@ const link = new Link({
     showMessages(status, link.film);
     params.update(status.params);
     showWindow(status.crop);
-    part("pause").setAttribute("aria-pressed", String(status.state === "paused"));
+    part("pause").setAttribute("aria-pressed", String(status.paused));
     showCropping();
-    develop();
+    if (link.film) inspector.refresh(link.film, status.state === "done");
   },
   film(film) {
+    state.develop = film.develop;
+    develop();
     view.show(film);
     showPicture(film, state.status);
     showMessages(state.status, film);
-    inspector.refresh(film);
+    inspector.refresh(film, false);
     showUnder(view, state.under);
   },
   away(why) {
@@ -66,11 +68,11 @@ const link = new Link({
 // ---- developing
 
 function stops() {
-  return (state.status?.develop?.stops ?? 0) + state.stops;
+  return (state.develop?.stops ?? 0) + state.stops;
 }
 
 function tonemap() {
-  return state.tonemap || (state.status?.develop?.tonemap ?? "neutral");
+  return state.tonemap || (state.develop?.tonemap ?? "neutral");
 }
 
 /// Develops the picture anew if that looks otherwise now.
@@ -244,7 +246,7 @@ function toast(text) {
 // ---- buttons and keys
 
 function pause() {
-  link.send({ type: "pause", on: state.status?.state !== "paused" });
+  link.send({ type: "pause", on: !state.status?.paused });
 }
 
 const zoomBy = (factor) => view.zoomTo(view.zoom * factor);
