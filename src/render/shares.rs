@@ -36,7 +36,8 @@ impl Tracer<'_> {
     pub fn shares(&self, control: &Control) -> Result<Option<Shares>, Cancelled> {
         let [width, height] = self.scene.trace.size;
         let (columns, rows) = (width.div_ceil(CELL), height.div_ceil(CELL));
-        let glows = |primitive: &Primitive| matches!(self.scene.material(primitive), Material::Emitter { .. });
+        let glows =
+            |primitive: &Primitive| matches!(self.scene.material(primitive), Material::Emitter { .. });
         let glowing = self.scene.primitives.iter().filter(|primitive| glows(primitive));
         let lamps = self.scene.lights.len() + glowing.take(MOST_LAMPS + 1).count();
         let bytes = columns as usize * rows as usize * lamps * size_of::<[f32; 3]>();

@@ -50,9 +50,7 @@ fn why(
     let frame = hub.frame().filter(|frame| frame.step == 1 && frame.generation == job.generation);
     let most = frame.map_or(1, |frame| frame.samples[0].max(1));
     let mut apart = Apart::new(prepass.scale);
-    while apart.samples() < most
-        && (apart.samples() == 0 || start.elapsed() < PATIENCE && !desk.is_news())
-    {
+    while apart.samples() < most && (apart.samples() == 0 || start.elapsed() < PATIENCE && !desk.is_news()) {
         let done = apart.samples();
         tracer.take_apart(pixel, done..most.min(done + TOGETHER), &mut apart);
     }

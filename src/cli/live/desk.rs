@@ -151,11 +151,6 @@ impl Desk {
         papers.hold();
     }
 
-    /// Whether paths are to wait.
-    pub fn is_paused(&self) -> bool {
-        self.lock().paused
-    }
-
     /// Lets paths wait while a text is read, so that it has the processor for itself.
     pub fn reading<T>(&self, read: impl FnOnce() -> T) -> T {
         let set = |reading| {

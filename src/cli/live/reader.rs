@@ -151,7 +151,8 @@ impl Reader {
             }
         };
         // Whoever emptied it, or wrote half of it, may still be writing what has errors.
-        if !emptied && !cut && !(wrong && self.doubtful.is_some()) {
+        let believed = !emptied && !cut && (!wrong || self.doubtful.is_none());
+        if believed {
             return None;
         }
         let since = *self.doubtful.get_or_insert_with(Instant::now);

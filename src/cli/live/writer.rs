@@ -6,7 +6,7 @@ use crate::cli::build;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::target::Target;
 use crate::cli::terminal::Terminal;
-use rt_lang::output::{Channels, Depth, Facts, Picture};
+use rt_lang::output::{Channels, Depth, Picture};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 
 /// A picture to be written, and what is known of it.
@@ -74,7 +74,7 @@ fn write(page: &Page, targets: &[Target], depth: Depth, interrupt: &Interrupt) -
         }
     }
     let staged = targets.iter().map(|target| target.stage(interrupt)).collect::<Result<Vec<_>, _>>()?;
-    build::write(&picture, &page.facts, &Channels::default(), depth, staged)
+    build::write(&picture, &page.frame.facts, &Channels::default(), depth, staged)
 }
 
 /// The picture of a frame of full size.

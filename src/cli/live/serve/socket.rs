@@ -111,8 +111,7 @@ impl Talk {
         let stops = frame.shown.stops;
         let sent = Sent::next(frame, stops, before.as_ref());
         let frame = sent.frame();
-        let begin =
-            json!({ "type": "begin", "size": frame.size, "step": frame.step, "scale": sent.scale() });
+        let begin = json!({ "type": "begin", "size": frame.size, "step": frame.step, "scale": sent.scale() });
         self.send(text(&begin)).await?;
         for tile in sent.tiles(before.as_ref()) {
             self.send(Message::Binary(tile.into())).await?;
