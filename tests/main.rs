@@ -4,6 +4,7 @@
 
 mod agreement;
 mod architecture;
+mod change;
 mod command;
 mod diagnostics;
 mod documents;

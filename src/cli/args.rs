@@ -268,7 +268,7 @@ pub struct Watch {
     pub outputs: Vec<PathBuf>,
 
     /// Shows the picture on a page of this machine alone, and prints the page's address on standard output. Without a
-    /// port on one that is free.
+    /// port on 4877, or on one that is free where that is taken.
     #[arg(long, value_name = "127.0.0.1:PORT", num_args = 0..=1, require_equals = true,
         default_missing_value = "127.0.0.1:0", value_parser = address)]
     pub serve: Option<SocketAddr>,

@@ -189,10 +189,14 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
     let window = window(scene, arguments.crop)?;
     let staged = stage(job, scene, window, context.interrupt)?;
     let Some(from) = compiled.provenance(&loaded.sources) else { return Ok(Exit::Diagnostics) };
-    let Ok(traced) = trace(context, job, from, window) else { context.interrupt.wait() };
+    let Ok(mut traced) = trace(context, job, from, window) else { context.interrupt.wait() };
     let facts = facts(scene, &traced);
     let depth = arguments.taking.look.bits;
     context.threads.install(|| write(&traced.picture, &facts, &traced.channels, depth, staged))?;
+    // The picture is safe before it is thought about.
+    if arguments.feedback {
+        traced.feedback = Some(context.threads.install(|| Tracer::new(scene).feedback(window)));
+    }
     let findings = findings(scene, &traced);
     let mut warnings: Vec<Diagnostic> =
         findings.iter().filter_map(|finding| compiled.judge(finding)).collect();
@@ -320,12 +324,11 @@ fn trace(context: &Context, job: &Job, from: Provenance, window: Window) -> Resu
         let of_first = arguments.aov.iter().any(|aov| aov.is_of_first_hits());
         let first = of_first.then(|| tracer.first_hits(window, samples, &control)).transpose()?;
         let channels = aov::channels(&arguments.aov, &film, first.as_ref(), from);
-        let feedback = arguments.feedback.then(|| tracer.feedback(window));
-        if feedback.is_some() {
+        if arguments.feedback {
             noise = film.noise(stops, scene.develop.tonemap);
         }
         let (fitting, cut) = (chosen, prepass.cut);
-        Ok(Traced { picture, samples, noise, target_met, stops, fitting, cut, channels, feedback })
+        Ok(Traced { picture, samples, noise, target_met, stops, fitting, cut, channels, feedback: None })
     })
 }
 

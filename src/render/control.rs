@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Shared between the threads that render and the one that waits: pauses, cancels, and tells how far it got.
 #[derive(Debug, Default)]
@@ -10,8 +11,8 @@ pub struct Control {
     done: AtomicU64,
     total: AtomicU64,
     paused: AtomicBool,
-    /// Woken when paths may go on.
-    going_on: (Mutex<()>, Condvar),
+    /// Woken when paths may go on. Holds since when they wait, and how long they did before.
+    going_on: (Mutex<(Option<Instant>, Duration)>, Condvar),
 }
 
 /// What a render yields that was told to stop.
@@ -42,9 +43,20 @@ impl Control {
 
     /// Lets paths wait, or go on.
     pub fn pause(&self, paused: bool) {
-        let _held = self.hold();
+        let mut held = self.hold();
+        let (since, before) = &mut *held;
+        if let Some(since) = since.take() {
+            *before += since.elapsed();
+        }
+        *since = paused.then(Instant::now);
         self.paused.store(paused, Relaxed);
         self.going_on.1.notify_all();
+    }
+
+    /// How long paths were to wait.
+    pub fn paused_for(&self) -> Duration {
+        let (since, before) = *self.hold();
+        before + since.map_or(Duration::ZERO, |since| since.elapsed())
     }
 
     /// Waits while the render is paused.
@@ -58,7 +70,7 @@ impl Control {
         }
     }
 
-    fn hold(&self) -> MutexGuard<'_, ()> {
+    fn hold(&self) -> MutexGuard<'_, (Option<Instant>, Duration)> {
         self.going_on.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

@@ -3,13 +3,18 @@
 use super::light::Source;
 use super::{Cancelled, Control, Tracer};
 use crate::color::Rgb;
+use crate::scene::{Material, Primitive};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Pixels along the side of a cell.
 const CELL: u32 = 4;
-/// With more lamps than this it takes too much memory, and lamps are rarely changed one by one.
+/// Samples of each pixel.
+const SAMPLES: u32 = 4;
+/// With more lamps than this, lamps are rarely changed one by one.
 const MOST_LAMPS: usize = 64;
+/// More memory than this is not taken.
+const MOST_BYTES: usize = 64 << 20;
 
 /// The light of each lamp in each cell of a picture.
 #[derive(Clone, Debug)]
@@ -22,7 +27,8 @@ pub struct Shares {
 }
 
 impl Tracer<'_> {
-    /// Learns the shares of the lamps from one sample of each pixel. None where there are too many lamps.
+    /// Learns the shares of the lamps from a few samples of each pixel. None where there are too many lamps, or it would take
+    /// too much memory.
     ///
     /// # Errors
     ///
@@ -30,14 +36,24 @@ impl Tracer<'_> {
     pub fn shares(&self, control: &Control) -> Result<Option<Shares>, Cancelled> {
         let [width, height] = self.scene.trace.size;
         let (columns, rows) = (width.div_ceil(CELL), height.div_ceil(CELL));
+        let glows =
+            |primitive: &Primitive| matches!(self.scene.material(primitive), Material::Emitter { .. });
+        let glowing = self.scene.primitives.iter().filter(|primitive| glows(primitive));
+        let lamps = self.scene.lights.len() + glowing.take(MOST_LAMPS + 1).count();
+        let bytes = columns as usize * rows as usize * lamps * size_of::<[f32; 3]>();
+        if lamps > MOST_LAMPS || bytes > MOST_BYTES {
+            return Ok(None);
+        }
         let cell = |index: u32| {
             let (left, top) = (index % columns * CELL, index / columns * CELL);
             let mut sums: BTreeMap<Source, Rgb> = BTreeMap::new();
             let pixels = (top..(top + CELL).min(height))
                 .flat_map(|y| (left..(left + CELL).min(width)).map(move |x| [x, y]));
             for pixel in pixels.take_while(|_| !control.is_cancelled()) {
-                for contribution in self.watched(pixel, 0).contributions {
-                    *sums.entry(contribution.source).or_default() += contribution.radiance;
+                for sample in 0..SAMPLES {
+                    for contribution in self.watched(pixel, sample).contributions {
+                        *sums.entry(contribution.source).or_default() += contribution.radiance;
+                    }
                 }
             }
             sums
@@ -49,9 +65,6 @@ impl Tracer<'_> {
         let mut sources: Vec<Source> = cells.iter().flat_map(|cell| cell.keys().copied()).collect();
         sources.sort_unstable();
         sources.dedup();
-        if sources.len() > MOST_LAMPS {
-            return Ok(None);
-        }
         let lamp = |cell: &BTreeMap<Source, Rgb>, source| {
             cell.get(source).map_or([0.0; 3], |sum| sum.to_array().map(|v| v as f32))
         };

@@ -27,13 +27,14 @@ impl Provenance<'_> {
 
     /// Points at where the limit of bounces costs most.
     pub fn point_at_cut(&self, diagnostic: Diagnostic, feedback: &Feedback) -> Diagnostic {
-        let mut places: BTreeMap<OriginId, f64> = BTreeMap::new();
+        let mut places: BTreeMap<Vec<Span>, (f64, OriginId)> = BTreeMap::new();
         for (id, share) in &feedback.cut {
-            *places.entry(self.scene.primitives[id.0 as usize].origin).or_default() += share;
+            let origin = self.scene.primitives[id.0 as usize].origin;
+            places.entry(self.origins.chain(origin)).or_insert((0.0, origin)).0 += share;
         }
-        let all: f64 = places.values().sum();
-        match places.into_iter().max_by(|(a, x), (b, y)| x.total_cmp(y).then(b.cmp(a))) {
-            Some((origin, share)) => {
+        let all: f64 = places.values().map(|(share, _)| share).sum();
+        match places.into_iter().max_by(|(a, (x, _)), (b, (y, _))| x.total_cmp(y).then(b.cmp(a))) {
+            Some((_, (share, origin))) => {
                 let words = format!("{:.0}% of it would have gone on from here", 100.0 * share / all);
                 self.label(diagnostic, origin, words)
             }
@@ -43,15 +44,17 @@ impl Provenance<'_> {
 
     /// The one cause of much of the noise.
     fn noisy(&self, feedback: &Feedback, noise: f64) -> Option<Diagnostic> {
-        let mut causes: BTreeMap<(Option<OriginId>, Cause, Option<OriginId>), (f64, Source)> =
-            BTreeMap::new();
+        // By place: turns of a loop are one.
+        let place = |origin: Option<OriginId>| origin.map(|origin| self.origins.chain(origin));
+        let mut causes: BTreeMap<_, (f64, Source, Option<OriginId>)> = BTreeMap::new();
         for ((first, source, kind), share) in &feedback.noise {
             let seen = first.map(|id| self.scene.primitives[id.0 as usize].origin);
-            let cause = (self.origin(*source), Cause::from(*kind), seen);
-            causes.entry(cause).or_insert((0.0, *source)).0 += share;
+            let cause = (place(self.origin(*source)), Cause::from(*kind), place(seen));
+            causes.entry(cause).or_insert((0.0, *source, seen)).0 += share;
         }
-        let most = causes.into_iter().max_by(|(a, (x, _)), (b, (y, _))| x.total_cmp(y).then(b.cmp(a)));
-        let ((light, cause, seen), (share, source)) = most?;
+        let most = causes.into_iter().max_by(|(a, (x, ..)), (b, (y, ..))| x.total_cmp(y).then(b.cmp(a)));
+        let ((_, cause, _), (share, source, seen)) = most?;
+        let light = self.origin(source);
         if noise < LEAST_NOISE || share < LEAST_SHARE {
             return None;
         }

@@ -4,7 +4,6 @@ use super::desk::{Desk, Job, Question};
 use super::hub::{Hub, Mask};
 use crate::cli::files::same_name;
 use rt_lang::render::apart::Apart;
-use rt_lang::render::first::FirstHits;
 use rt_lang::render::{Control, Prepass, Tracer, Window};
 use rt_lang::scene::{Primitive, PrimitiveId};
 use rt_lang::span::Span;
@@ -13,18 +12,22 @@ use std::time::{Duration, Instant};
 
 /// Samples of a pixel that are watched together.
 const TOGETHER: u32 = 64;
+/// Rows that are looked at together.
+const BAND: u32 = 64;
 /// How long a pixel is taken apart, at least its first [`TOGETHER`] samples.
 const PATIENCE: Duration = Duration::from_millis(200);
 
 /// Answers questions about a job until there is a new one.
 pub fn answer_all(desk: &Desk, hub: &Hub, tracer: &Tracer, prepass: &Prepass, job: &Job) {
-    let mut first_hits = None;
+    let mut seen = None;
     while let Some(question) = desk.question() {
         // Whoever asked may be gone.
         match question {
-            Question::Why { pixel, reply } => drop(reply.send(why(hub, tracer, prepass, job, pixel))),
+            Question::Why { pixel, reply } => {
+                drop(reply.send(why(desk, hub, tracer, prepass, job, pixel)));
+            }
             Question::Light { file, place, reply } => {
-                drop(reply.send(light(tracer, job, &mut first_hits, &file, place)));
+                drop(reply.send(light(desk, tracer, job, &mut seen, &file, place)));
             }
         }
     }
@@ -32,6 +35,7 @@ pub fn answer_all(desk: &Desk, hub: &Hub, tracer: &Tracer, prepass: &Prepass, jo
 
 /// Takes a pixel apart, with the samples that the picture has of it, unless these are too many.
 fn why(
+    desk: &Desk,
     hub: &Hub,
     tracer: &Tracer,
     prepass: &Prepass,
@@ -43,9 +47,10 @@ fn why(
     if pixel[0] >= width || pixel[1] >= height {
         return Err(format!("the picture is {width}×{height}: it has no pixel {},{}", pixel[0], pixel[1]));
     }
-    let most = hub.frame().filter(|frame| frame.step == 1).map_or(1, |frame| frame.samples[0].max(1));
+    let frame = hub.frame().filter(|frame| frame.step == 1 && frame.generation == job.generation);
+    let most = frame.map_or(1, |frame| frame.samples[0].max(1));
     let mut apart = Apart::new(prepass.scale);
-    while apart.samples() < most && (apart.samples() == 0 || start.elapsed() < PATIENCE) {
+    while apart.samples() < most && (apart.samples() == 0 || start.elapsed() < PATIENCE && !desk.is_news()) {
         let done = apart.samples();
         tracer.take_apart(pixel, done..most.min(done + TOGETHER), &mut apart);
     }
@@ -55,9 +60,10 @@ fn why(
 
 /// Which pixels show what stands at a place of a file, or what is made of a material that does.
 fn light(
+    desk: &Desk,
     tracer: &Tracer,
     job: &Job,
-    first_hits: &mut Option<FirstHits>,
+    seen: &mut Option<Vec<Option<PrimitiveId>>>,
     file: &str,
     [line, column]: [u32; 2],
 ) -> Option<Mask> {
@@ -77,9 +83,24 @@ fn light(
         return None;
     }
     let size = job.scene().trace.size;
-    if first_hits.is_none() {
-        *first_hits = tracer.first_hits(Window::whole(size), 1, &Control::new()).ok();
+    if seen.is_none() {
+        *seen = Some(look(tracer, size, &desk.begin_answer())?);
     }
-    let hits = first_hits.as_ref()?;
-    Some(Mask::of(size, |x, y| hits.pixel(x, y).shown().iter().any(|(id, _)| chosen[id.0 as usize])))
+    let seen = seen.as_ref()?;
+    let id = |x: u32, y: u32| seen[y as usize * size[0] as usize + x as usize];
+    Some(Mask::of(size, |x, y| id(x, y).is_some_and(|id| chosen[id.0 as usize])))
+}
+
+/// What the pixels of a picture show, row by row. None where it is cancelled.
+fn look(tracer: &Tracer, size: [u32; 2], control: &Control) -> Option<Vec<Option<PrimitiveId>>> {
+    let [width, height] = size;
+    let mut seen = Vec::with_capacity(width as usize * height as usize);
+    // What is known of a pixel at first is much larger than what is kept.
+    for y in (0..height).step_by(BAND as usize) {
+        let band = Window { x: 0, y, width, height: BAND.min(height - y) };
+        let hits = tracer.first_hits(band, 1, control).ok()?;
+        let pixels = (y..y + band.height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        seen.extend(pixels.map(|(x, y)| hits.pixel(x, y).shown().first().map(|(id, _)| *id)));
+    }
+    Some(seen)
 }

@@ -48,6 +48,19 @@ pub enum Question {
     },
 }
 
+impl Question {
+    /// Whether nobody waits for an answer any more.
+    fn is_forgotten(&self) -> bool {
+        match self {
+            Question::Why { reply, .. } => reply.is_closed(),
+            Question::Light { reply, .. } => reply.is_closed(),
+        }
+    }
+}
+
+/// Questions that may wait.
+const MOST_QUESTIONS: usize = 64;
+
 /// Work that waits.
 #[derive(Default)]
 pub struct Desk {
@@ -64,6 +77,8 @@ struct Papers {
     reading: bool,
     /// Of the trace that is under way.
     control: Option<Arc<Control>>,
+    /// Of an answer that is under way.
+    answering: Option<Arc<Control>>,
     questions: VecDeque<Question>,
 }
 
@@ -72,7 +87,7 @@ impl Desk {
     pub fn put(&self, job: Arc<Job>) {
         let mut papers = self.lock();
         papers.next = Some(job);
-        if let Some(control) = &papers.control {
+        for control in papers.control.iter().chain(&papers.answering) {
             control.cancel();
         }
         self.news.notify_all();
@@ -136,11 +151,6 @@ impl Desk {
         papers.hold();
     }
 
-    /// Whether paths are to wait.
-    pub fn is_paused(&self) -> bool {
-        self.lock().paused
-    }
-
     /// Lets paths wait while a text is read, so that it has the processor for itself.
     pub fn reading<T>(&self, read: impl FnOnce() -> T) -> T {
         let set = |reading| {
@@ -154,9 +164,24 @@ impl Desk {
         read
     }
 
-    /// Leaves a question.
+    /// A handle for an answer that takes a while; a new job cancels it.
+    pub fn begin_answer(&self) -> Arc<Control> {
+        let mut papers = self.lock();
+        let control = Arc::new(Control::new());
+        if papers.next.is_some() {
+            control.cancel();
+        }
+        papers.answering = Some(control.clone());
+        control
+    }
+
+    /// Leaves a question. Of too many the oldest is never answered.
     pub fn ask(&self, question: Question) {
-        self.lock().questions.push_back(question);
+        let mut papers = self.lock();
+        papers.questions.push_back(question);
+        if papers.questions.len() > MOST_QUESTIONS {
+            papers.questions.pop_front();
+        }
         self.news.notify_all();
     }
 
@@ -168,6 +193,7 @@ impl Desk {
                 return None;
             }
             match papers.questions.pop_front() {
+                Some(question) if question.is_forgotten() => {}
                 Some(question) => return Some(question),
                 None => papers = self.wait(papers),
             }

@@ -8,14 +8,17 @@ use super::watcher::Watcher;
 use crate::cli::args::Watch;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::scene::Loaded;
+use crate::cli::target::Aside;
 use crate::cli::terminal::Terminal;
-use crate::cli::{Exit, Problem, target};
+use crate::cli::{Exit, Problem, plain};
 use rt_lang::change;
 use rt_lang::diagnostic::any_errors;
 use rt_lang::render::Window;
 use rt_lang::source::Sources;
+use rt_lang::span::SourceId;
 use rt_lang::syntax::{self, ast};
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
@@ -48,7 +51,7 @@ impl Engine {
     /// Puts the parts together.
     pub fn new(
         arguments: &Watch,
-        reader: Reader,
+        mut reader: Reader,
         watcher: Watcher,
         desk: Arc<Desk>,
         hub: Arc<Hub>,
@@ -58,7 +61,7 @@ impl Engine {
         let scene = arguments.scene.clone();
         let name = scene.display().to_string();
         hub.say(|status| status.scene = name);
-        let (set, said) = (BTreeMap::new(), Said::default());
+        let (set, said) = (reader.take_settings(), Said::default());
         let quiet = arguments.quiet;
         Engine {
             scene,
@@ -118,6 +121,7 @@ impl Engine {
             Request::Pause(paused) => {
                 self.desk.pause(paused);
                 self.hub.say(|status| {
+                    status.paused = paused;
                     status.state = match status.state {
                         State::Rendering if paused => State::Paused,
                         State::Paused if !paused => State::Rendering,
@@ -153,22 +157,31 @@ impl Engine {
     fn set(&mut self, name: String, value: String) -> bool {
         // Its name is put before `=`: anything else would set something else.
         let known = self.hub.status().params.iter().any(|param| param.name == name);
-        self.fresh.push(name.clone());
-        match value.trim() {
+        let changed = match value.trim() {
             _ if !known => false,
             "" => self.set.remove(&name).is_some(),
-            value => self.set.insert(name, value.into()).as_deref() != Some(value),
+            value => self.set.insert(name.clone(), value.into()).as_deref() != Some(value),
+        };
+        if changed {
+            self.fresh.push(name);
         }
+        changed
     }
 
     /// Looks whether there is a new text.
     fn look(&mut self, anyway: bool) {
         self.again = None;
-        let Engine { reader, desk, set, .. } = self;
-        match desk.reading(|| reader.look(set, anyway)) {
+        let Engine { reader, desk, set, hub, .. } = self;
+        let reads = || hub.say(|status| status.state = State::Compiling);
+        let before = hub.status().state;
+        match desk.reading(|| reader.look(set, anyway, reads)) {
             // What lies on the way to a missing file may have come.
             Seen::Same => self.watcher.follow(self.reader.files()),
-            Seen::Later(wait) => self.again = Some(Instant::now() + wait),
+            Seen::Later(wait) => {
+                self.watcher.follow(self.reader.files());
+                self.hub.say(|status| status.state = before);
+                self.again = Some(Instant::now() + wait);
+            }
             Seen::New(loaded) => {
                 self.watcher.follow(self.reader.files());
                 self.take(*loaded);
@@ -222,11 +235,16 @@ impl Engine {
         let job = Arc::new(Job { generation: self.generation, loaded, names: listed(names) });
         let notes = job.loaded.compiled.notes.clone();
         let generation = self.generation;
+        let resized = self.job.as_ref().is_some_and(|old| old.scene().trace.size != job.scene().trace.size);
+        if resized {
+            self.desk.put_first(None);
+        }
         self.hub.say(|status| {
-            status.state = State::Rendering;
+            status.state = if status.paused { State::Paused } else { State::Rendering };
             status.diagnostics = said;
             status.generation = generation;
             status.notes = notes;
+            status.crop = status.crop.filter(|_| !resized);
         });
         if had_errors && !self.quiet {
             self.terminal.line("no errors any more");
@@ -275,28 +293,45 @@ impl Engine {
     }
 
     fn write_default(&self, name: &str) -> Result<(), String> {
+        const CHANGING: &str = "the scene has errors or is being written: mend it first";
         let value = self.set.get(name).ok_or_else(|| format!("`{name}` is as the file has it"))?;
-        let text = std::fs::read_to_string(&self.scene).map_err(|error| {
-            format!("cannot read `{}`: {}", self.scene.display(), crate::cli::plain(&error))
-        })?;
-        let read = self.job.as_ref().map(|job| &job.loaded.sources.get(job.loaded.id).text);
-        if self.said.errors > 0 || read != Some(&text) {
-            return Err("the scene has errors or is being written: mend it first".into());
+        let read = || {
+            let cannot = |error: &_| format!("cannot read `{}`: {}", self.scene.display(), plain(error));
+            std::fs::read_to_string(&self.scene).map_err(|error| cannot(&error))
+        };
+        let text = read()?;
+        let compiled = self.job.as_ref().map(|job| &job.loaded.sources.get(job.loaded.id).text);
+        if self.said.errors > 0 || compiled != Some(&text) {
+            return Err(CHANGING.into());
         }
-        let (file, _) = syntax::parse(rt_lang::span::SourceId(0), &text);
-        let default = file.body.entries.iter().find_map(|entry| match entry {
-            ast::Entry::Statement(statement) => match &statement.kind {
-                ast::StatementKind::Param { name: found, default, .. } if found.text == name => {
-                    Some(default.span.range())
-                }
-                _ => None,
-            },
-            _ => None,
-        });
-        let default = default.ok_or_else(|| format!("the scene has no param `{name}`"))?;
-        let text = format!("{}{value}{}", &text[..default.start], &text[default.end..]);
-        target::replace(&self.scene, text.as_bytes(), &self.interrupt).map_err(|problem| problem.message)
+        // Without comments, which would swallow what stands behind.
+        let (expr, slips) = syntax::parse_expression(SourceId(0), value);
+        let value = value.get(expr.span.range()).filter(|_| slips.is_empty()).ok_or(CHANGING)?;
+        let default = default_of(&text, name).ok_or_else(|| format!("the scene has no param `{name}`"))?;
+        let new = format!("{}{value}{}", &text[..default.start], &text[default.end..]);
+        let mut aside =
+            Aside::beside(&self.scene, &self.interrupt).map_err(|problem| problem.message.clone())?;
+        aside.write(new.as_bytes()).map_err(|problem| problem.message.clone())?;
+        // Somebody may have saved it meanwhile.
+        if read()? != text {
+            return Err(CHANGING.into());
+        }
+        aside.finish().map_err(|problem| problem.message.clone())
     }
+}
+
+/// Where the default of a param stands.
+fn default_of(text: &str, name: &str) -> Option<Range<usize>> {
+    let (file, _) = syntax::parse(SourceId(0), text);
+    file.body.entries.iter().find_map(|entry| match entry {
+        ast::Entry::Statement(statement) => match &statement.kind {
+            ast::StatementKind::Param { name: found, default, .. } if found.text == name => {
+                Some(default.span.range())
+            }
+            _ => None,
+        },
+        _ => None,
+    })
 }
 
 /// How a file is named where it lies below the current folder.

@@ -3,6 +3,7 @@
 //! The engine says what is new; a page, or any number of them, takes the newest when it is ready for it. Nobody waits
 //! for anybody: what comes in between is never seen by the slow.
 
+use rt_lang::output::Facts;
 use rt_lang::scene::Tonemap;
 use serde::Serialize;
 use std::sync::mpsc;
@@ -27,6 +28,12 @@ pub struct Frame {
     pub pixels: Vec<[f32; 5]>,
     /// Whether lamps have changed since it was traced, so that it is a mix of the light of each.
     pub remixed: bool,
+    /// How it is developed.
+    pub shown: Shown,
+    /// How it came about.
+    pub facts: Facts,
+    /// Whether parts of it may be transparent.
+    pub transparent: bool,
 }
 
 impl Frame {
@@ -45,6 +52,8 @@ pub struct Status {
     pub scene: String,
     /// What is done now.
     pub state: State,
+    /// Whether paths are to wait, as soon as there are any.
+    pub paused: bool,
     /// What changed last, and what that led to.
     pub reason: Option<String>,
     /// Width and height in pixels; zeros before there was a picture.
@@ -283,7 +292,9 @@ impl Hub {
     /// Shows a picture.
     pub fn show(&self, frame: Arc<Frame>) {
         let mut known = self.lock();
-        Arc::make_mut(&mut known.status).remixed = frame.remixed;
+        let status = Arc::make_mut(&mut known.status);
+        (status.size, status.develop, status.remixed) = (frame.size, Some(frame.shown), frame.remixed);
+        status.picture = frame.generation;
         known.frame = Some(frame);
         drop(known);
         self.tell();

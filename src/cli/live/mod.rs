@@ -48,7 +48,6 @@ use painter::Painter;
 use rayon::ThreadPoolBuilder;
 use reader::Reader;
 use serve::Wanted;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -81,12 +80,7 @@ pub fn run(arguments: &Watch, terminal: Terminal, interrupt: &Interrupt) -> Resu
         quiet: arguments.quiet,
         names,
     };
-    let paint = move || {
-        // A defect in there has been reported by the hook; nothing would be painted any more.
-        let _ = catch_unwind(AssertUnwindSafe(|| painter.run()));
-        std::process::exit(101);
-    };
-    let started = std::thread::Builder::new().name("paint".into()).spawn(paint);
+    let started = std::thread::Builder::new().name("paint".into()).spawn(move || painter.run());
     started.map_err(|error| Problem::new(format!("cannot start a thread: {error}")))?;
     if let Some(address) = arguments.serve {
         let editor = Editor::new(arguments.editor_url.clone(), arguments.open_with)?;

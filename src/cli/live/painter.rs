@@ -16,7 +16,7 @@ use rt_lang::output::Facts;
 use rt_lang::render::light::Source;
 use rt_lang::render::shares::Shares;
 use rt_lang::render::{
-    self, Control, FIRST_NOISE_SAMPLES, Film, MOST_NOISE_SAMPLES, Prepass, Structure, Tracer, Window,
+    Control, FIRST_NOISE_SAMPLES, Film, MOST_NOISE_SAMPLES, Prepass, Structure, Tracer, Window,
 };
 use rt_lang::scene::{Background, Scene, Target};
 use std::sync::Arc;
@@ -43,6 +43,17 @@ pub struct Painter {
     pub quiet: bool,
     /// The outputs, as they are named when one is done.
     pub names: String,
+}
+
+/// Ends the process when a thread that nobody waits for panics. That was reported, and nothing would be painted any more.
+struct Bomb;
+
+impl Drop for Bomb {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            std::process::exit(101);
+        }
+    }
 }
 
 /// What is left of a job when the next one comes.
@@ -77,11 +88,16 @@ struct Canvas {
     time: Duration,
     /// The noise when all pixels had a power of two of samples last.
     noise: Option<f64>,
+    /// How many samples it went for last.
+    aim: u32,
+    /// Whether it is done, and was written as it is developed.
+    done: bool,
 }
 
 impl Painter {
     /// Paints for ever.
     pub fn run(&self) -> ! {
+        let _bomb = Bomb;
         let mut left = Left::default();
         loop {
             let job = self.desk.take();
@@ -98,35 +114,59 @@ struct Painting<'a> {
     scene: &'a Scene,
     /// What is different from the job before, which need not be the text before: some are overtaken.
     change: Option<Change>,
+    /// Whether a mix is shown in place of a picture with few samples.
+    mixing: bool,
+    /// The scene's, in hexadecimal.
+    hash: String,
     left: Left,
 }
 
 impl<'a> Painting<'a> {
     fn new(painter: &'a Painter, job: &'a Job, left: Left) -> Painting<'a> {
         let scene = job.scene();
+        let hash = scene.hash().to_hex().to_string();
         let change = left.job.as_ref().map(|before| change::between(before.scene(), scene));
-        Painting { painter, job, scene, change, left }
+        Painting { painter, job, scene, change, mixing: false, hash, left }
     }
 
     fn run(mut self) -> Left {
         let tracer = Tracer::with(self.scene, self.left.structure.take());
-        let kept = self.change.as_ref().is_some_and(|change| change.paths == Paths::Kept);
-        let canvas = self.left.canvas.take().filter(|_| kept);
-        if !kept {
+        let canvas = self.left.canvas.take().and_then(|canvas| self.keep(canvas));
+        if canvas.is_none() {
             self.remix();
         }
-        let remixed = self.left.mix.is_some() && !kept;
+        let remixed = self.mixing;
         self.say_reason(canvas.is_some(), tracer.keeps_structure(), remixed);
         let prepass = canvas.as_ref().map_or_else(|| tracer.prepass(), |canvas| canvas.prepass);
         std::thread::scope(|scope| {
             let (tracer, prepass) = (&tracer, &prepass);
             let Painter { desk, hub, .. } = self.painter;
             let job = self.job;
-            scope.spawn(move || answer_all(desk, hub, tracer, prepass, job));
+            scope.spawn(move || {
+                let _bomb = Bomb;
+                answer_all(desk, hub, tracer, prepass, job);
+            });
             self.paint(tracer, *prepass, canvas);
         });
         self.left.structure = Some(tracer.into_structure());
         self.left
+    }
+
+    /// What stays good of the samples there are.
+    fn keep(&self, mut canvas: Canvas) -> Option<Canvas> {
+        let change = self.change.as_ref().filter(|change| change.paths == Paths::Kept)?;
+        let [_, most] = canvas.work.samples();
+        // It must not have gone on where a picture made afresh would end.
+        let unchanged = !change.target && !change.developed;
+        let within = match self.scene.trace.target {
+            Target::Samples(n) => most <= n.max(1),
+            Target::Noise(_) => unchanged || most <= FIRST_NOISE_SAMPLES,
+        };
+        if !unchanged {
+            canvas.aim = self.first_aim();
+            canvas.done = false;
+        }
+        within.then_some(canvas)
     }
 
     fn say_reason(&self, samples_kept: bool, structure_kept: bool, remixed: bool) {
@@ -170,14 +210,17 @@ impl<'a> Painting<'a> {
             [red * r, green * g, blue * b, error, alpha]
         });
         let pixels = pixels.collect();
-        let frame = self.frame(pixels, 1, mix.picture.samples, true);
+        let shown = mix.picture.shown;
+        let frame = self.frame(pixels, 1, mix.picture.samples, shown, true);
         self.painter.hub.show(frame);
         self.left.mix = Some(mix);
+        self.mixing = true;
     }
 
     /// Learns how much of the picture is of which lamp, if nobody wants anything else.
     fn learn_shares(&mut self, tracer: &Tracer, frame: Arc<Frame>) {
         let Some(control) = self.painter.desk.begin() else { return };
+        self.left.mix = None;
         if let Ok(Some(shares)) = tracer.shares(&control) {
             let factors = vec![Rgb::ONE; shares.sources().len()];
             self.left.mix = Some(Mix { picture: frame, shares, factors });
@@ -186,44 +229,37 @@ impl<'a> Painting<'a> {
 
     /// Traces until a new job comes.
     fn paint(&mut self, tracer: &Tracer, prepass: Prepass, canvas: Option<Canvas>) {
-        let start = Instant::now();
-        let desk = &self.painter.desk;
+        let _bomb = Bomb;
+        let painter = self.painter;
+        let desk = &painter.desk;
         let fresh = canvas.is_none();
-        let mut canvas = match canvas {
-            Some(canvas) => canvas,
-            None => {
-                let Some(canvas) = self.begin(tracer, prepass) else { return };
-                canvas
-            }
-        };
-        let mut aim = self.first_aim();
+        let Some(mut canvas) = canvas.or_else(|| self.begin(tracer, prepass)) else { return };
         let mut written = 0;
         let (mut shown, mut cost) = (Instant::now(), Duration::ZERO);
         if !fresh {
-            self.show(&mut canvas, true);
+            self.show(&mut canvas, false);
         }
         while !desk.is_news() {
             let first = desk.first();
-            let Some(step) = canvas.work.next(aim, first) else {
-                if let Some(next) = self.next_aim(&canvas, aim) {
-                    aim = next;
+            let Some(step) = canvas.work.next(canvas.aim, first) else {
+                if let Some(next) = self.next_aim(&canvas) {
+                    canvas.aim = next;
                     continue;
                 }
-                let frame = self.finish(&mut canvas, start);
-                self.learn_shares(tracer, frame);
+                self.finish(tracer, &mut canvas);
                 desk.rest(first);
                 continue;
             };
             let Some(control) = desk.begin() else { break };
-            self.say_progress(&canvas, aim, State::Rendering);
+            self.say_progress(&canvas, State::Rendering);
             if !self.step(tracer, &mut canvas, &step, &control) {
                 continue;
             }
-            let level = canvas.work.level(aim);
-            if level > written && level < aim {
+            let level = canvas.work.level(canvas.aim);
+            if level > written && level < canvas.aim {
                 written = level;
                 let frame = self.show(&mut canvas, true);
-                self.write(&canvas, frame, None);
+                self.write(frame, None);
             } else if shown.elapsed() > SHARE * cost {
                 let start = Instant::now();
                 self.show(&mut canvas, false);
@@ -236,9 +272,13 @@ impl<'a> Painting<'a> {
     /// Takes a first look. None if a new job comes before it is done.
     fn begin(&mut self, tracer: &Tracer, prepass: Prepass) -> Option<Canvas> {
         let start = Instant::now();
-        let control = self.painter.desk.begin()?;
-        self.say_shown(&prepass);
-        let look = tracer.look(LOOK, &control).ok()?;
+        let look = loop {
+            let control = self.painter.desk.begin()?;
+            // It is cancelled too where only another window is to come first.
+            if let Ok(look) = tracer.look(LOOK, &control) {
+                break look;
+            }
+        };
         let pixel = |seen: Option<Rgb>| match seen {
             Some(radiance) => {
                 let [r, g, b] = radiance.to_array().map(|v| v as f32);
@@ -247,20 +287,22 @@ impl<'a> Painting<'a> {
             None => [0.0, 0.0, 0.0, f32::INFINITY, 0.0],
         };
         let look: Vec<[f32; 5]> = look.into_iter().map(pixel).collect();
-        if self.left.mix.is_none() {
-            let frame = self.frame(look.clone(), LOOK, [0, 1], false);
+        if !self.mixing {
+            let shown = self.shown(&prepass);
+            let frame = self.frame(look.clone(), LOOK, [0, 1], shown, false);
             self.painter.hub.show(frame);
         }
         let size = self.scene.trace.size;
         let film = Film::new(Window::whole(size), prepass.scale);
-        Some(Canvas { film, prepass, work: Work::new(size), look, time: start.elapsed(), noise: None })
+        let (work, time) = (Work::new(size), start.elapsed());
+        Some(Canvas { film, prepass, work, look, time, noise: None, aim: self.first_aim(), done: false })
     }
 
     fn step(&self, tracer: &Tracer, canvas: &mut Canvas, step: &Step, control: &Control) -> bool {
         let start = Instant::now();
         let Canvas { film, .. } = canvas;
         let traced = tracer.add_samples_in(&step.windows, film, step.samples.clone(), control).is_ok();
-        let time = start.elapsed();
+        let time = start.elapsed().saturating_sub(control.paused_for());
         canvas.time += time;
         if traced {
             canvas.work.done(step, time);
@@ -277,112 +319,121 @@ impl<'a> Painting<'a> {
     }
 
     /// How many to go for when those are there; none where the picture is done.
-    fn next_aim(&self, canvas: &Canvas, aim: u32) -> Option<u32> {
+    fn next_aim(&self, canvas: &Canvas) -> Option<u32> {
         match self.scene.trace.target {
             Target::Samples(_) => None,
             Target::Noise(wanted) => {
-                let noise = self.noise(canvas);
-                (noise > wanted && aim < MOST_NOISE_SAMPLES).then_some(aim * 2)
+                let more = canvas.aim < MOST_NOISE_SAMPLES && self.noise(canvas) > wanted;
+                more.then_some(canvas.aim * 2)
             }
         }
     }
 
     fn noise(&self, canvas: &Canvas) -> f64 {
-        let shown = self.shown(&canvas.prepass);
-        canvas.film.noise(shown.stops, shown.tonemap)
+        let Shown { stops, tonemap } = self.shown(&canvas.prepass);
+        canvas.film.noise(stops, tonemap)
     }
 
-    fn shown(&self, prepass: &Prepass) -> render::Shown {
+    fn shown(&self, prepass: &Prepass) -> Shown {
         let develop = self.scene.develop;
         let stops = develop.exposure.unwrap_or(chosen_stops(prepass));
-        render::Shown { stops, tonemap: develop.tonemap }
+        Shown { stops, tonemap: develop.tonemap }
     }
 
-    fn say_shown(&self, prepass: &Prepass) {
-        let render::Shown { stops, tonemap } = self.shown(prepass);
-        let size = self.scene.trace.size;
-        self.painter.hub.say(|status| {
-            status.size = size;
-            status.develop = Some(Shown { stops, tonemap });
-        });
-    }
-
-    fn say_progress(&self, canvas: &Canvas, aim: u32, state: State) {
+    fn say_progress(&self, canvas: &Canvas, state: State) {
         let [samples, _] = canvas.work.samples();
-        let paused = self.painter.desk.is_paused();
-        let left = canvas.work.left(aim).map(|left| left.as_secs_f64());
+        let left = canvas.work.left(canvas.aim).map(|left| left.as_secs_f64());
         let target = match self.scene.trace.target {
             Target::Samples(n) => Aim::Samples(n),
             Target::Noise(noise) => Aim::Noise(noise),
         };
-        let picture = self.job.generation;
-        let noise = canvas.noise;
+        let generation = self.job.generation;
         self.painter.hub.say(|status| {
-            if status.state != State::Error {
-                status.state = if paused && state == State::Rendering { State::Paused } else { state };
+            // A newer text may have errors, or be on its way.
+            if status.generation == generation {
+                let paused = status.paused && state == State::Rendering;
+                status.state = if paused { State::Paused } else { state };
             }
             status.samples = samples;
             status.seconds = canvas.time.as_secs_f64();
-            (status.left, status.target, status.noise) = (left, Some(target), noise);
-            status.picture = picture;
+            (status.left, status.target, status.noise) = (left, Some(target), canvas.noise);
         });
     }
 
     /// Shows what there is, unless that is still worse than what was mixed.
     fn show(&mut self, canvas: &mut Canvas, even: bool) -> Arc<Frame> {
-        self.say_shown(&canvas.prepass);
-        if even && canvas.work.samples()[0] > 1 {
+        let samples = canvas.work.samples();
+        if even && samples[0] > 1 {
             canvas.noise = Some(self.noise(canvas));
         }
-        let samples = canvas.work.samples();
-        let frame = self.frame(pixels(canvas, self.scene.trace.size), 1, samples, false);
-        if samples[0] >= ENOUGH {
-            self.left.mix = None;
+        let shown = self.shown(&canvas.prepass);
+        let frame = self.frame(pixels(canvas, self.scene.trace.size), 1, samples, shown, false);
+        if samples[0] >= ENOUGH.min(canvas.aim) {
+            self.mixing = false;
         }
-        if self.left.mix.is_none() {
+        if !self.mixing {
             self.painter.hub.show(frame.clone());
         }
         frame
     }
 
-    fn frame(&mut self, pixels: Vec<[f32; 5]>, step: u32, samples: [u32; 2], remixed: bool) -> Arc<Frame> {
+    fn frame(
+        &mut self,
+        pixels: Vec<[f32; 5]>,
+        step: u32,
+        samples: [u32; 2],
+        shown: Shown,
+        remixed: bool,
+    ) -> Arc<Frame> {
         self.left.version += 1;
-        let (generation, size) = (self.job.generation, self.scene.trace.size);
-        let version = self.left.version;
-        Arc::new(Frame { generation, version, size, step, samples, pixels, remixed })
-    }
-
-    fn finish(&mut self, canvas: &mut Canvas, start: Instant) -> Arc<Frame> {
-        self.left.mix = None;
-        let frame = self.show(canvas, true);
-        let [samples, _] = canvas.work.samples();
-        self.say_progress(canvas, samples, State::Done);
-        let [width, height] = self.scene.trace.size;
-        let unit = if samples == 1 { "sample" } else { "samples" };
-        let time = duration(start.elapsed());
-        let line = format!("{}{width}×{height}, {samples} {unit} in {time}", self.painter.names);
-        match &self.painter.writer {
-            Some(_) => self.write(canvas, frame.clone(), (!self.painter.quiet).then_some(line)),
-            None if !self.painter.quiet => self.painter.terminal.line(&line),
-            None => {}
-        }
-        frame
-    }
-
-    fn write(&self, canvas: &Canvas, frame: Arc<Frame>, done: Option<String>) {
-        let Some(writer) = &self.painter.writer else { return };
-        let render::Shown { stops, tonemap } = self.shown(&canvas.prepass);
-        let [samples, _] = canvas.work.samples();
+        let scene = self.scene;
         let facts = Facts {
-            samples: Some(u64::from(samples)),
-            seed: Some(self.scene.trace.seed),
-            scene: Some(self.scene.hash().to_hex().to_string()),
-            stops: Some(stops),
-            tonemap: Some(tonemap),
+            samples: Some(u64::from(samples[0])),
+            seed: Some(scene.trace.seed),
+            scene: Some(self.hash.clone()),
+            stops: Some(shown.stops),
+            tonemap: Some(shown.tonemap),
             ..Facts::unknown()
         };
-        let transparent = self.scene.trace.background == Background::Transparent;
-        writer.put(Page { frame, facts, transparent, done });
+        Arc::new(Frame {
+            generation: self.job.generation,
+            version: self.left.version,
+            size: scene.trace.size,
+            step,
+            samples,
+            pixels,
+            remixed,
+            shown,
+            facts,
+            transparent: scene.trace.background == Background::Transparent,
+        })
+    }
+
+    /// The picture is done: says so once, and gets ready for what may come.
+    fn finish(&mut self, tracer: &Tracer, canvas: &mut Canvas) {
+        if !canvas.done {
+            let frame = self.show(canvas, true);
+            let [samples, _] = canvas.work.samples();
+            let [width, height] = self.scene.trace.size;
+            let unit = if samples == 1 { "sample" } else { "samples" };
+            let time = duration(canvas.time);
+            let line = format!("{}{width}×{height}, {samples} {unit} in {time}", self.painter.names);
+            match &self.painter.writer {
+                Some(_) => self.write(frame.clone(), (!self.painter.quiet).then_some(line)),
+                None if !self.painter.quiet => self.painter.terminal.line(&line),
+                None => {}
+            }
+            canvas.done = true;
+            self.say_progress(canvas, State::Done);
+            self.learn_shares(tracer, frame);
+        }
+        self.say_progress(canvas, State::Done);
+    }
+
+    fn write(&self, frame: Arc<Frame>, done: Option<String>) {
+        if let Some(writer) = &self.painter.writer {
+            writer.put(Page { frame, done });
+        }
     }
 }
 

@@ -24,11 +24,25 @@ const GLANCE: Duration = Duration::from_millis(5);
 const FRESH: Duration = Duration::from_secs(1);
 
 /// What a file looks like from outside.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 struct Look {
     length: u64,
-    changed: Option<SystemTime>,
+    /// When it was written, and when it came to be what it is, also under this name.
+    changed: [Option<SystemTime>; 2],
+    /// Which file it is, whatever it is called.
+    identity: [u64; 2],
     taken: SystemTime,
+}
+
+impl Look {
+    /// Whether it looks the same, and is old enough to tell by that: a file that was changed just now may change again without
+    /// a new time.
+    fn tells_same(&self, before: &Look) -> bool {
+        let outside = |look: &Look| (look.length, look.changed, look.identity);
+        let newest = before.changed.iter().flatten().max();
+        let age = newest.and_then(|changed| before.taken.duration_since(*changed).ok());
+        outside(self) == outside(before) && age.is_some_and(|age| age > FRESH)
+    }
 }
 
 /// A file that the scene read.
@@ -78,20 +92,37 @@ impl Reader {
         }
     }
 
+    /// The settings of the command line by name, which are then for the caller to give. None where they are not all of
+    /// different names, which the compiler will say.
+    pub fn take_settings(&mut self) -> BTreeMap<String, String> {
+        let pair = |setting: &String| {
+            setting.split_once('=').map(|(name, value)| (name.trim().to_string(), value.trim().to_string()))
+        };
+        let pairs: Option<BTreeMap<String, String>> = self.reading.set.iter().map(pair).collect();
+        let whole = pairs.filter(|pairs| pairs.len() == self.reading.set.len());
+        if whole.is_some() {
+            self.reading.set.clear();
+        }
+        whole.unwrap_or_default()
+    }
+
     /// The files that matter.
     pub fn files(&self) -> impl Iterator<Item = PathBuf> {
         self.known.keys().cloned().chain([self.scene.clone()])
     }
 
     /// Looks whether something has changed, and if so reads and compiles. `set` stands beside the settings of the command
-    /// line, in whose place it comes; `anyway` compiles also what is the same.
-    pub fn look(&mut self, set: &BTreeMap<String, String>, anyway: bool) -> Seen {
+    /// line, in whose place it comes; `anyway` compiles also what is the same; `reads` is called before anything is read.
+    pub fn look(&mut self, set: &BTreeMap<String, String>, anyway: bool, reads: impl FnOnce()) -> Seen {
         if !anyway && self.doubtful.is_none() && !self.known.is_empty() && !self.has_changed() {
             return Seen::Same;
         }
+        reads();
         let reading = Reading { set: settings(&self.reading.set, set), ..self.reading.clone() };
+        // Looked at before they are read: what changes in between looks otherwise later.
+        let looks = self.files().map(|path| (absolute(&path), look(&path))).collect();
         let loaded = scene::load(&self.scene, &reading, &self.overrides);
-        let known = self.read_by(&loaded);
+        let known = self.read_by(&loaded, &looks);
         if let Some(wait) = self.doubt(&loaded, &known) {
             return Seen::Later(wait);
         }
@@ -119,7 +150,9 @@ impl Reader {
                 (any_errors(&loaded.compiled.diagnostics), cut)
             }
         };
-        if !emptied && !cut {
+        // Whoever emptied it, or wrote half of it, may still be writing what has errors.
+        let believed = !emptied && !cut && (!wrong || self.doubtful.is_none());
+        if believed {
             return None;
         }
         let since = *self.doubtful.get_or_insert_with(Instant::now);
@@ -132,25 +165,29 @@ impl Reader {
         let Reader { known, own, .. } = self;
         known.iter_mut().filter(|(path, _)| !own.contains(*path)).any(|(path, known)| {
             let look = look(path);
-            let settled = |look: &Look| {
-                let age = look.changed.and_then(|changed| look.taken.duration_since(changed).ok());
-                age.is_some_and(|age| age > FRESH)
+            let same = match (&look, &known.look) {
+                (Some(now), Some(before)) => now.tells_same(before),
+                (None, None) => known.hash.is_none(),
+                _ => false,
             };
-            let outside = |look: &Look| (look.length, look.changed);
-            // A time that is long past does not come twice.
-            if look.map(|look| outside(&look)) == known.look.map(|look| outside(&look))
-                && known.look.is_none_or(|look| settled(&look))
-            {
+            if same {
                 return false;
             }
-            let now = hashed(path);
             known.look = look;
-            now.map(|(hash, _)| hash) != known.hash
+            // Of another length it need not be read.
+            let length = look.map_or(0, |look| look.length as usize);
+            length != known.length || hashed(path) != known.hash
         })
     }
 
     /// What a scene has read.
-    fn read_by(&self, loaded: &Result<Loaded, Problem>) -> BTreeMap<PathBuf, Known> {
+    fn read_by(
+        &self,
+        loaded: &Result<Loaded, Problem>,
+        looks: &BTreeMap<PathBuf, Option<Look>>,
+    ) -> BTreeMap<PathBuf, Known> {
+        // One that nobody looked at before is read again when something happens.
+        let look = |path: &PathBuf| looks.get(path).copied().flatten();
         let asked = loaded.iter().flat_map(|loaded| loaded.files.held());
         let mut known: BTreeMap<PathBuf, Known> = asked
             .map(|(path, bytes)| {
@@ -168,7 +205,7 @@ impl Reader {
         let look = look(&scene);
         let (hash, length) = match loaded {
             // What is no text is not held: it is read again until it is old enough to be known by its time.
-            Ok(loaded) if refused(loaded) => (None, 1),
+            Ok(loaded) if refused(loaded) => (None, usize::MAX),
             Ok(loaded) => {
                 let text = &loaded.sources.get(loaded.id).text;
                 (Some(blake3::hash(text.as_bytes())), text.len())
@@ -196,14 +233,29 @@ fn refused(loaded: &Loaded) -> bool {
 
 fn look(path: &Path) -> Option<Look> {
     let metadata = std::fs::metadata(path).ok()?;
-    Some(Look { length: metadata.len(), changed: metadata.modified().ok(), taken: SystemTime::now() })
+    let (length, taken) = (metadata.len(), SystemTime::now());
+    let (named, identity) = identity(&metadata);
+    Some(Look { length, changed: [metadata.modified().ok(), named], identity, taken })
 }
 
-/// The hash of what a plain file holds, and its length.
-fn hashed(path: &Path) -> Option<(blake3::Hash, usize)> {
+/// When a file came to be what it is under its name, and which it is.
+#[cfg(unix)]
+fn identity(metadata: &std::fs::Metadata) -> (Option<SystemTime>, [u64; 2]) {
+    use std::os::unix::fs::MetadataExt;
+    let since = Duration::new(metadata.ctime().max(0) as u64, metadata.ctime_nsec() as u32);
+    (SystemTime::UNIX_EPOCH.checked_add(since), [metadata.dev(), metadata.ino()])
+}
+
+#[cfg(not(unix))]
+fn identity(metadata: &std::fs::Metadata) -> (Option<SystemTime>, [u64; 2]) {
+    (metadata.created().ok(), [0; 2])
+}
+
+/// The hash of what a plain file holds.
+fn hashed(path: &Path) -> Option<blake3::Hash> {
     let plain = std::fs::metadata(path).is_ok_and(|metadata| metadata.is_file());
     let bytes = plain.then(|| input::read_bytes(path, u64::MAX - 1).ok()).flatten()?;
-    Some((blake3::hash(&bytes), bytes.len()))
+    Some(blake3::hash(&bytes))
 }
 
 fn absolute(path: &Path) -> PathBuf {

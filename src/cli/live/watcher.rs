@@ -6,7 +6,7 @@
 use crate::cli::Problem;
 use notify::event::{AccessKind, AccessMode, EventKind};
 use notify::{RecommendedWatcher, RecursiveMode, Watcher as _};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -21,7 +21,8 @@ const PERIOD: Duration = Duration::from_millis(500);
 pub struct Watcher {
     /// None where files are looked at from time to time.
     system: Option<RecommendedWatcher>,
-    folders: BTreeSet<PathBuf>,
+    /// Those that are watched, each with what tells it from another of its name.
+    folders: BTreeMap<PathBuf, Option<[u64; 2]>>,
     tell: Tell,
 }
 
@@ -34,7 +35,7 @@ impl Watcher {
         tell: impl Fn() + Send + Sync + 'static,
     ) -> Result<Watcher, Problem> {
         let tell: Tell = std::sync::Arc::new(tell);
-        let mut watcher = Watcher { system: None, folders: BTreeSet::new(), tell: tell.clone() };
+        let mut watcher = Watcher { system: None, folders: BTreeMap::new(), tell: tell.clone() };
         match period {
             Some(period) => poll(period, tell)?,
             None => {
@@ -59,25 +60,50 @@ impl Watcher {
         for file in files {
             places(&file, &mut wanted, MOST_LINKS);
         }
-        let fresh: Vec<PathBuf> = wanted.difference(&self.folders).cloned().collect();
-        let mut deaf = false;
-        for folder in self.folders.difference(&wanted) {
-            // It may be gone.
-            let _ = system.unwatch(folder);
+        // A folder that was made anew is another one, though it has the name.
+        let gone = |(folder, identity): (&PathBuf, &Option<[u64; 2]>)| {
+            (!wanted.contains(folder) || *identity != identity_of(folder)).then(|| folder.clone())
+        };
+        for folder in self.folders.iter().filter_map(gone).collect::<Vec<_>>() {
+            // It may be gone for the system too.
+            let _ = system.unwatch(&folder);
+            self.folders.remove(&folder);
         }
-        for folder in &fresh {
-            // One that has gone in the meantime changes what is above it, which is looked at next.
-            deaf |= system.watch(folder, RecursiveMode::NonRecursive).is_err() && folder.is_dir();
+        let (mut deaf, mut fresh) = (false, false);
+        for folder in wanted {
+            if self.folders.contains_key(&folder) {
+                continue;
+            }
+            let identity = identity_of(&folder);
+            match system.watch(&folder, RecursiveMode::NonRecursive) {
+                Ok(()) => {
+                    fresh = true;
+                    self.folders.insert(folder, identity);
+                }
+                // One that has gone in the meantime changes what is above it, which is looked at next.
+                Err(_) => deaf |= folder.is_dir(),
+            }
         }
-        self.folders = wanted;
         if deaf && poll(PERIOD, self.tell.clone()).is_ok() {
             // The system watches no more folders than it likes.
             self.system = None;
-        } else if !fresh.is_empty() {
+        } else if fresh {
             // What changed before it was watched was not told.
             (self.tell)();
         }
     }
+}
+
+/// What tells a folder from another of the same name.
+fn identity_of(folder: &Path) -> Option<[u64; 2]> {
+    let metadata = fs::metadata(folder).ok()?;
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        Some([metadata.dev(), metadata.ino()])
+    }
+    #[cfg(not(unix))]
+    metadata.is_dir().then_some([0; 2])
 }
 
 /// Reading a file is no change of it.

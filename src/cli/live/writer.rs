@@ -6,17 +6,13 @@ use crate::cli::build;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::target::Target;
 use crate::cli::terminal::Terminal;
-use rt_lang::output::{Channels, Depth, Facts, Picture};
+use rt_lang::output::{Channels, Depth, Picture};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 
 /// A picture to be written, and what is known of it.
 pub struct Page {
     /// The picture.
     pub frame: Arc<Frame>,
-    /// How it came about.
-    pub facts: Facts,
-    /// Whether parts of it may be transparent.
-    pub transparent: bool,
     /// What to say when it is written.
     pub done: Option<String>,
 }
@@ -68,7 +64,7 @@ fn next(slot: &(Mutex<Option<Page>>, Condvar)) -> Page {
 }
 
 fn write(page: &Page, targets: &[Target], depth: Depth, interrupt: &Interrupt) -> Result<(), Problem> {
-    let picture = picture(&page.frame, page.transparent);
+    let picture = picture(&page.frame);
     for target in targets {
         if let Some(reason) = target.format.refuses(picture.size) {
             return Err(Problem::new(reason.to_string()));
@@ -78,11 +74,11 @@ fn write(page: &Page, targets: &[Target], depth: Depth, interrupt: &Interrupt) -
         }
     }
     let staged = targets.iter().map(|target| target.stage(interrupt)).collect::<Result<Vec<_>, _>>()?;
-    build::write(&picture, &page.facts, &Channels::default(), depth, staged)
+    build::write(&picture, &page.frame.facts, &Channels::default(), depth, staged)
 }
 
 /// The picture of a frame of full size.
-pub fn picture(frame: &Frame, transparent: bool) -> Picture {
+pub fn picture(frame: &Frame) -> Picture {
     let [width, height] = frame.size;
     let [columns, _] = frame.held();
     let at = |x: u32, y: u32| &frame.pixels[((y / frame.step) * columns + x / frame.step) as usize];
@@ -98,5 +94,5 @@ pub fn picture(frame: &Frame, transparent: bool) -> Picture {
         pixels: pixels.collect(),
         alpha: None,
     };
-    if transparent { whole.with_alpha(|x, y| f64::from(at(x, y)[4])) } else { whole }
+    if frame.transparent { whole.with_alpha(|x, y| f64::from(at(x, y)[4])) } else { whole }
 }

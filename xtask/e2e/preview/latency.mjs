@@ -53,7 +53,7 @@ const paint = (page, kind, { after = 0, step = 8, pixel } = {}) =>
     [kind, after, step, pixel],
   ));
 
-const times = { "save to error painted": [], "save to first pixels": [], "save to full resolution": [], inspector: [] };
+const times = { "save to error painted": [], "save to first pixels": [], "save to full resolution": [], inspector: [], "cancelled and ended": [] };
 
 async function measure(page) {
   const shown = () => page.evaluate(() => Number(document.getElementById("stage").dataset.generation));
@@ -83,6 +83,16 @@ async function measure(page) {
   }
 }
 
+/// From Ctrl-C in the middle of a render to the end of the process: what runs is let go of.
+async function interrupt() {
+  const watched = await watch(scene);
+  await until("paths are traced", () => fetch(`${watched.url}picture.exr`).then((answer) => answer.ok));
+  await pause(50);
+  const start = clock();
+  await watched.end();
+  times["cancelled and ended"].push(clock() - start);
+}
+
 save(scene, text(color(49)));
 const browser = await browse();
 const watched = await watch(scene);
@@ -94,6 +104,7 @@ try {
   await browser.close();
   await watched.end();
 }
+for (let i = 0; i < ROUNDS; i++) await interrupt();
 const rank = (sorted, share) => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
 console.log("ms                          p50     p95");
 for (const [name, all] of Object.entries(times)) {

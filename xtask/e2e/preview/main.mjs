@@ -4,7 +4,7 @@
 import { existsSync } from "node:fs";
 import { join } from "node:path";
 import { deaf, guarded } from "./guard.mjs";
-import { SCENE, assert, browse, equal, finished, load, open, pause, placeOf, run, save, shown, until, watch } from "./setting.mjs";
+import { SCENE, assert, browse, equal, finished, load, open, placeOf, run, save, shown, until, watch } from "./setting.mjs";
 
 const SIZE = [240, 160];
 const desk = process.cwd();
@@ -193,7 +193,7 @@ await check("a stop is a factor of two", {}, async ({ url }) => {
   await finished(page);
   const before = await shown(page, 5000);
   for (let i = 0; i < 4; i++) await page.keyboard.press("]");
-  equal(await page.textContent("#exposure-text"), "1.00 stops (file + 1.00)", "exposure");
+  equal(await page.textContent("#exposure-text"), "1.00 stops (+ 1.00)", "exposure");
   const after = await shown(page, 5000);
   const linear = (v) => (v / 255 <= 0.04045 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4);
   let compared = 0;
@@ -221,10 +221,10 @@ await check("a slow page slows nobody", {}, async ({ url }, scene) => {
     }
     return performance.now() - start;
   };
-  const with_slow = await rounds();
+  const withSlow = await rounds();
   slow.forEach((socket) => socket.destroy());
   const without = await rounds();
-  assert(with_slow < 2 * without + 500, `10 saves took ${Math.round(with_slow)} ms beside slow pages, ${Math.round(without)} ms without`);
+  assert(withSlow < 2 * without + 500, `10 saves took ${Math.round(withSlow)} ms beside slow pages, ${Math.round(without)} ms without`);
 });
 
 await check("params are set and written back", {}, async ({ url }, scene) => {
@@ -235,6 +235,9 @@ await check("params are set and written back", {}, async ({ url }, scene) => {
   await page.keyboard.press("Enter");
   await newer(page, last);
   await page.locator(".param.is-set").waitFor();
+  await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
+  await page.click("#copy-set");
+  await until("the flags are copied", async () => (await page.evaluate(() => navigator.clipboard.readText())) === "--set 'size=75cm'", 5000);
   await keep(page, "params");
   await page.getByRole("button", { name: "Write" }).click();
   await until("the file says so", () => load(scene, "utf8").includes("param size: length = 75cm in 10cm to 1m"), 5000);

@@ -1,9 +1,10 @@
 //! The picture in the making, as a file.
 
-use super::super::hub::{Frame, Hub, Status};
+use super::super::hub::{Frame, Hub};
+use super::super::writer::picture;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use rt_lang::output::{self, Depth, Facts, Format, Picture};
+use rt_lang::output::{self, Depth, Facts, Format};
 use rt_lang::scene::Tonemap;
 use std::path::Path;
 
@@ -50,13 +51,12 @@ impl Saved {
 
 /// The newest picture as a file.
 pub async fn answer(hub: &Hub, saved: Saved) -> Response {
-    let (frame, status) = (hub.frame(), hub.status());
-    let Some(frame) = frame.filter(|frame| frame.step == 1) else {
+    let Some(frame) = hub.frame().filter(|frame| frame.step == 1) else {
         return (StatusCode::SERVICE_UNAVAILABLE, "There is no picture yet.\n").into_response();
     };
-    let name = format!("{}.{}", stem(&status.scene), saved.extension());
+    let name = format!("{}.{}", stem(&hub.status().scene), saved.extension());
     // Large pictures take a while, and others are served on this thread.
-    let encoded = tokio::task::spawn_blocking(move || encode(&frame, &status, saved)).await;
+    let encoded = tokio::task::spawn_blocking(move || encode(&frame, saved)).await;
     match encoded {
         Ok(Ok(bytes)) => {
             let media = if saved.format == Format::Exr { "image/x-exr" } else { "image/png" };
@@ -69,21 +69,14 @@ pub async fn answer(hub: &Hub, saved: Saved) -> Response {
     }
 }
 
-fn encode(frame: &Frame, status: &Status, saved: Saved) -> Result<Vec<u8>, String> {
-    let index = |x: u32, y: u32| (y as usize) * (frame.size[0] as usize) + x as usize;
-    let radiance = |x, y| {
-        let [r, g, b, ..] = frame.pixels[index(x, y)].map(f64::from);
-        rt_lang::color::Rgb::new(r, g, b)
-    };
-    let picture = Picture::gather(frame.size, [0, 0], frame.size, radiance)
-        .with_alpha(|x, y| f64::from(frame.pixels[index(x, y)][4]));
+fn encode(frame: &Frame, saved: Saved) -> Result<Vec<u8>, String> {
     let facts = Facts {
-        samples: Some(frame.samples[0].into()),
-        stops: saved.stops.or(status.develop.map(|shown| shown.stops)),
-        tonemap: saved.tonemap.or(status.develop.map(|shown| shown.tonemap)),
-        ..Facts::unknown()
+        stops: saved.stops.or(frame.facts.stops),
+        tonemap: saved.tonemap.or(frame.facts.tonemap),
+        ..frame.facts.clone()
     };
-    output::encode(&picture, &facts, saved.format, Depth::Eight).map_err(|reason| reason.to_string())
+    let encoded = output::encode(&picture(frame), &facts, saved.format, Depth::Eight);
+    encoded.map_err(|reason| reason.to_string())
 }
 
 /// The name of the scene's file, as far as it can stand in a header.

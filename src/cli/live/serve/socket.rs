@@ -107,11 +107,11 @@ impl Talk {
         if self.sent.as_ref().is_some_and(|sent| sent.frame().version == frame.version) {
             return Ok(());
         }
-        let stops = status.develop.map_or(0.0, |shown| shown.stops);
         let before = self.sent.take();
+        let stops = frame.shown.stops;
         let sent = Sent::next(frame, stops, before.as_ref());
         let frame = sent.frame();
-        let begin = json!({ "type": "begin", "size": frame.size, "step": frame.step });
+        let begin = json!({ "type": "begin", "size": frame.size, "step": frame.step, "scale": sent.scale() });
         self.send(text(&begin)).await?;
         for tile in sent.tiles(before.as_ref()) {
             self.send(Message::Binary(tile.into())).await?;
@@ -122,6 +122,7 @@ impl Talk {
             "version": frame.version,
             "samples": frame.samples,
             "remixed": frame.remixed,
+            "develop": frame.shown,
         });
         self.send(text(&end)).await?;
         self.sent = Some(sent);

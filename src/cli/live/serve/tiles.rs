@@ -35,6 +35,11 @@ impl Sent {
         &self.frame
     }
 
+    /// The power of two that its values are multiplied by.
+    pub fn scale(&self) -> i32 {
+        self.scale
+    }
+
     /// The tiles that another picture does not have, each as a message.
     pub fn tiles<'a>(&'a self, before: Option<&'a Sent>) -> impl Iterator<Item = Vec<u8>> + 'a {
         let alike = move |sent: &&Sent| {
@@ -129,12 +134,25 @@ fn head(words: [u32; HEAD]) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::live::hub::Shown;
+    use rt_lang::output::Facts;
+    use rt_lang::scene::Tonemap;
     use std::sync::Arc;
 
     fn frame(size: [u32; 2], pixel: impl Fn(u32, u32) -> [f32; 5]) -> Arc<Frame> {
         let pixels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y))).map(|(x, y)| pixel(x, y));
-        let pixels = pixels.collect();
-        Arc::new(Frame { generation: 3, version: 9, size, step: 1, samples: [1, 1], pixels, remixed: false })
+        Arc::new(Frame {
+            generation: 3,
+            version: 9,
+            size,
+            step: 1,
+            samples: [1, 1],
+            pixels: pixels.collect(),
+            remixed: false,
+            shown: Shown { stops: 0.0, tonemap: Tonemap::Neutral },
+            facts: Facts::unknown(),
+            transparent: false,
+        })
     }
 
     fn words(message: &[u8]) -> Vec<u32> {

@@ -31,21 +31,24 @@ export function read(buffer) {
 
 /// A picture, whole or the first look at one.
 export class Film {
-  constructor(size, step) {
+  constructor(size, step, scale) {
     this.size = size;
     this.step = step;
+    /// The power of two that its values are multiplied by.
+    this.scale = scale;
     this.width = Math.ceil(size[0] / step);
     this.height = Math.ceil(size[1] / step);
     this.bits = new Uint16Array(this.width * this.height * STRIDE);
-    this.scale = 0;
     this.transparent = false;
     this.generation = 0;
+    /// How the text that it shows develops it.
+    this.develop = null;
     /// The rectangle that has changed since it was last developed: left, top, right, bottom.
     this.dirty = null;
   }
 
-  fits(size, step) {
-    return this.size[0] === size[0] && this.size[1] === size[1] && this.step === step;
+  fits(size, step, scale) {
+    return this.size[0] === size[0] && this.size[1] === size[1] && this.step === step && this.scale === scale;
   }
 
   /// Takes a tile; what lies outside is left.
@@ -65,7 +68,6 @@ export class Film {
         read += channels;
       }
     }
-    this.scale = tile.scale;
     this.transparent ||= channels === STRIDE;
     const [left, top, right, bottom] = this.dirty ?? [x, y, x, y];
     this.dirty = [Math.min(left, x), Math.min(top, y), Math.max(right, x + width), Math.max(bottom, y + height)];
@@ -81,7 +83,7 @@ export class Film {
 
   /// One that stays as it is.
   copy() {
-    const copy = Object.assign(new Film(this.size, this.step), this);
+    const copy = Object.assign(new Film(this.size, this.step, this.scale), this);
     copy.bits = this.bits.slice();
     copy.dirty = null;
     return copy;

@@ -36,7 +36,7 @@ export function hold(view, on) {
     stage.dataset.hand = "drag";
   });
 
-  const let_go = (event) => {
+  const letGo = (event) => {
     if (!pointers.delete(event.pointerId)) return;
     delete stage.dataset.hand;
     if (event.type === "pointercancel") return;
@@ -44,8 +44,8 @@ export function hold(view, on) {
     const pixel = view.pixel(event.clientX, event.clientY);
     if (!hand.dragging && pixel && event.button === 0) on.click(pixel);
   };
-  stage.addEventListener("pointerup", let_go);
-  stage.addEventListener("pointercancel", let_go);
+  stage.addEventListener("pointerup", letGo);
+  stage.addEventListener("pointercancel", letGo);
   stage.addEventListener("pointerleave", () => on.hover(null));
 
   stage.addEventListener("wheel", (event) => {

@@ -11,8 +11,9 @@ const PATHS = {
   refracted: "refracted",
 };
 
-/// Characters of a file's name that are shown.
+/// Characters of a file's name that are shown, where there is more room and less.
 const MOST_NAME = 18;
+const BRIEF_NAME = 10;
 
 /// The panel. `on` has `ask(x, y)` and `mark(pixel or null)`.
 export class Inspector {
@@ -36,10 +37,13 @@ export class Inspector {
     await this.ask();
   }
 
-  /// Asks again, as the picture now shows another text.
-  refresh(film) {
-    if (!this.pixel || film.generation === this.generation) return;
-    this.generation = film.generation;
+  /// Asks again where the picture now shows another text, has twice the samples, or is done.
+  refresh(film, done) {
+    const { generation, step } = film;
+    const samples = step === 1 ? film.samples[0] : 0;
+    const more = done ? samples !== this.samples : samples >= 2 * this.samples && samples > 0;
+    if (!this.pixel || (generation === this.generation && !more)) return;
+    Object.assign(this, { generation, samples });
     this.ask();
   }
 
@@ -113,9 +117,9 @@ function uses(all) {
 }
 
 /// The file's name, not too much of it, and the line; the rest is in the title.
-function short({ file, start }) {
+function short({ file, start }, most = MOST_NAME) {
   const name = file.split(/[\\/]/).pop();
-  const brief = name.length > MOST_NAME ? `${name.slice(0, MOST_NAME / 2)}…${name.slice(-MOST_NAME / 2)}` : name;
+  const brief = name.length > most ? `${name.slice(0, most / 2)}…${name.slice(-most / 2)}` : name;
   return place({ file, line: start.line, column: start.column }, `${brief}:${start.line}`);
 }
 
@@ -128,7 +132,7 @@ function shares(all, describe) {
 
 function light(one) {
   const last = one.uses.at(-1);
-  return [element("span", {}, title(one), last ? element("span", { class: "at" }, " ", short(last)) : null)];
+  return [element("span", {}, title(one), last ? element("span", { class: "at" }, " ", short(last, BRIEF_NAME)) : null)];
 }
 
 function path({ kind, order }) {

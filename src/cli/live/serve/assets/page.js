@@ -29,6 +29,7 @@ const inspector = new Inspector({
   mark: (pixel) => {
     view.mark = pixel;
     view.draw();
+    showUnder(view, pixel ?? state.under);
   },
 });
 const link = new Link({
@@ -43,15 +44,17 @@ const link = new Link({
     showMessages(status, link.film);
     params.update(status.params);
     showWindow(status.crop);
-    part("pause").setAttribute("aria-pressed", String(status.state === "paused"));
+    part("pause").setAttribute("aria-pressed", String(status.paused));
     showCropping();
-    develop();
+    if (link.film) inspector.refresh(link.film, status.state === "done");
   },
   film(film) {
+    state.develop = film.develop;
+    develop();
     view.show(film);
     showPicture(film, state.status);
     showMessages(state.status, film);
-    inspector.refresh(film);
+    inspector.refresh(film, false);
     showUnder(view, state.under);
   },
   away(why) {
@@ -65,18 +68,18 @@ const link = new Link({
 // ---- developing
 
 function stops() {
-  return (state.status?.develop?.stops ?? 0) + state.stops;
+  return (state.develop?.stops ?? 0) + state.stops;
 }
 
 function tonemap() {
-  return state.tonemap || (state.status?.develop?.tonemap ?? "neutral");
+  return state.tonemap || (state.develop?.tonemap ?? "neutral");
 }
 
 /// Develops the picture anew if that looks otherwise now.
 function develop() {
   const look = { stops: stops(), tonemap: tonemap(), show: state.show };
   sessionStorage.setItem("look", JSON.stringify({ stops: state.stops, tonemap: state.tonemap, show: state.show }));
-  const offset = state.stops === 0 ? "" : ` (file ${signed(state.stops)})`;
+  const offset = state.stops === 0 ? "" : ` (${signed(state.stops)})`;
   say(part("exposure-text"), `${look.stops.toFixed(2)} stops${offset}`);
   part("exposure").value = state.stops;
   part("exposure-back").hidden = state.stops === 0;
@@ -243,7 +246,7 @@ function toast(text) {
 // ---- buttons and keys
 
 function pause() {
-  link.send({ type: "pause", on: state.status?.state !== "paused" });
+  link.send({ type: "pause", on: !state.status?.paused });
 }
 
 const zoomBy = (factor) => view.zoomTo(view.zoom * factor);

@@ -23,7 +23,9 @@ export function showStatus(status) {
   say(part("size"), status.size[0] ? `${status.size[0]} × ${status.size[1]}` : "–");
   part("progress").value = progress(status);
   part("notes-section").hidden = status.notes.length === 0;
-  part("notes").replaceChildren(...status.notes.map((note) => element("li", {}, note)));
+  if (part("notes").textContent !== status.notes.join("")) {
+    part("notes").replaceChildren(...status.notes.map((note) => element("li", {}, note)));
+  }
 }
 
 function showState(state, text) {

@@ -87,13 +87,14 @@ export class Link {
   }
 
   /// Tiles of a picture of the same shape go into the one there is; it is shown once all are there.
-  begin({ size, step }) {
-    this.next = this.film?.fits(size, step) ? this.film : new Film(size, step);
+  begin({ size, step, scale }) {
+    this.next = this.film?.fits(size, step, scale) ? this.film : new Film(size, step, scale);
   }
 
   finish(message) {
     if (!this.next) return;
-    this.film = Object.assign(this.next, { generation: message.generation, samples: message.samples, remixed: message.remixed });
+    const { generation, samples, remixed, develop } = message;
+    this.film = Object.assign(this.next, { generation, samples, remixed, develop });
     this.next = null;
     this.told.film(this.film);
   }

@@ -208,7 +208,9 @@ export class View {
     const { film, canvas } = plate;
     this.context.imageSmoothingEnabled = film.step > 1 || !exact;
     this.context.imageSmoothingQuality = this.zoom < 1 ? "high" : "low";
-    this.context.drawImage(canvas, 0, 0, film.width * film.step, film.height * film.step);
+    const [w, h] = film.size;
+    // The last column and row of a first look stand for what is left.
+    this.context.drawImage(canvas, 0, 0, w / film.step, h / film.step, 0, 0, w, h);
   }
 
   drawPinned(w, h, exact) {
