@@ -232,8 +232,12 @@ fn time_is_in_proportion_to_the_text() {
     ];
     for seed in seeds {
         let time = |length: usize| on_small_stack(seed.repeat(length / seed.len())).0;
-        let (short, long) = (time(100_000), time(400_000));
-        assert!(long < short * 12 + Duration::from_millis(100), "{seed:?}: {short:?}, then {long:?}");
+        let measured = || (time(100_000), time(400_000));
+        let proportional =
+            |(short, long): &(Duration, Duration)| *long < *short * 12 + Duration::from_millis(100);
+        // A busy machine can hold up one run; what is out of proportion is so every time.
+        let mut runs = std::iter::repeat_with(measured).take(3);
+        assert!(runs.any(|run| proportional(&run)), "{seed:?} takes more than its share of time");
     }
 }
 

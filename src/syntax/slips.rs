@@ -266,6 +266,9 @@ impl<'t> Builder<'t> {
         let value = inner.next().expect("this slip has a value");
         let value_span = self.at(value.as_span().start(), self.before(value.as_span().end()).len());
         let field = &name.text == "material" && !top;
+        if let Some(named) = self.named_otherwise(&name, &value, span).filter(|_| !is_reserved(&name.text)) {
+            return named;
+        }
         if let Some(diagnostic) = self.no_name(&name.text, &value).filter(|_| !is_reserved(&name.text)) {
             self.report(diagnostic);
             return (Entry::Broken(Broken { name: None, span }), 0);
@@ -295,6 +298,37 @@ impl<'t> Builder<'t> {
             self.report(errors::no_brace(&name.text, name.span, value_span));
         }
         (Entry::Broken(Broken { name: Some(name), span }), 0)
+    }
+
+    /// `sphere ball = { … }`, `sphere "ball" { … }`: a thing whose name stands otherwise.
+    fn named_otherwise(&self, kind: &Name, value: &Node<'t>, span: Span) -> Option<Deep<Entry>> {
+        let mut inner = value.clone().into_inner();
+        let (first, sign) = (inner.next()?, inner.next());
+        let written = first.as_str().trim_ascii_end();
+        let place = self.trimmed(&first);
+        if first.as_rule() == Rule::text && sign.is_none() {
+            let text = written.trim_matches('"');
+            let thing = self.after(value.as_span().end()).trim_start_matches(BLANKS).starts_with('{');
+            let inside = Span { start: place.start + 1, end: place.end - 1, ..place };
+            let name = Some(Name { text: text.into(), span: inside }).filter(|_| is_word(text));
+            if !thing {
+                return None;
+            }
+            self.report(errors::quoted_name(name.as_ref(), place));
+            return Some((Entry::Broken(Broken { name, span }), 0));
+        }
+        let sign = sign.filter(|sign| sign.as_rule() == Rule::foreign_equals && is_word(written))?;
+        let body = inner.next().filter(|body| body.as_rule() == Rule::bare_body)?.into_inner().next()?;
+        let name = Name { text: written.into(), span: place };
+        let edit = Span { start: place.end, end: self.span(&body).start, ..self.span(&sign) };
+        self.report(errors::sign_before_body(&format!("{} {written}", kind.text), "=", edit));
+        Some(match self.construct(vec![kind.clone()], body) {
+            (Some(construct), depth) => {
+                let thing = StatementKind::Thing { name: Some(name), construct };
+                self.checked(self.plain(thing, span), depth, span)
+            }
+            (None, depth) => (Entry::Broken(Broken { name: Some(name), span }), depth),
+        })
     }
 
     /// `sphere 2nd { … }`, `sphere my-ball { … }`: what stands as the name of a thing and cannot be one.

@@ -181,7 +181,11 @@ fn one_of_several_cameras_is_chosen_where_one_is_wanted() {
         "sphere { radius: 1m }\ncamera a { look: 0 }\ncamera b { from: (0, 0, 9)m, look: 0 }\n",
     );
     assert_eq!(desk.run("check two.rt").code, Some(0));
-    for command in ["info two.rt", "expand two.rt -o flat.rt", "export two.rt -o two.xml"] {
+    // To tell of them all, none has to be.
+    let info = desk.run("info two.rt");
+    info.expect(0, &[]);
+    assert!(info.printed().contains("a, b"), "{}", info.printed());
+    for command in ["expand two.rt -o flat.rt", "export two.rt -o two.xml"] {
         assert_eq!(desk.run(command).code, Some(1), "{command}");
         assert_eq!(desk.run(&format!("{command} --camera b")).code, Some(0), "{command}");
     }

@@ -79,6 +79,15 @@ pub(in crate::syntax) fn no_name(kind: &str, name: &str, span: Span) -> Diagnost
     diagnostic.at("`-` subtracts").help(format!("join the words by `_`: `{better}`")).fix(span, better)
 }
 
+/// `sphere "ball" { … }`; the name, where the text can be one.
+pub(in crate::syntax) fn quoted_name(name: Option<&Name>, span: Span) -> Diagnostic {
+    let diagnostic = Diagnostic::new(Code::E0001, "the name of a thing has no quotes", span).at("a text");
+    match name {
+        Some(name) => diagnostic.help(format!("write `{}`", name.text)).fix(span, name.text.as_str()),
+        None => diagnostic.help("a name is one word, of letters, digits and `_`"),
+    }
+}
+
 /// `sphere: { radius: 1m }`, `sphere = { radius: 1m }`
 pub(in crate::syntax) fn sign_before_body(kind: &str, sign: &str, edit: Span) -> Diagnostic {
     unexpected(sign, edit)
