@@ -43,6 +43,6 @@ mod errors {
         Diagnostic::new(Code::W0105, message, allow.span)
             .at("allows nothing")
             .help("remove it")
-            .fix(allow.span, "")
+            .fix(allow.all, "")
     }
 }

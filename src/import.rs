@@ -135,7 +135,10 @@ mod errors {
     pub(super) fn not_text(written: &Name) -> Diagnostic {
         Diagnostic::new(Code::E0501, format!("`{}` is not UTF-8 text", written.text), written.span)
             .at("not a scene")
-            .help("save the file as UTF-8")
+            .help(match written.text.ends_with(".rt") {
+                true => "save the file as UTF-8",
+                false => "`import` takes in a scene, `file.rt`; a picture is laid on by `image(…)`, and a mesh is a `mesh`",
+            })
     }
 
     pub(super) fn cycle(written: &Name, open: &[FilePath]) -> Diagnostic {

@@ -8,6 +8,7 @@ use super::scope::{Item, Place};
 use super::types::{Element, Kind, Type};
 use super::{Checker, errors};
 use crate::schema::Category;
+use crate::span::Span;
 use crate::syntax::ast::{self, Entry, Keyword, Name, StatementKind as Tree};
 use crate::units;
 use smol_str::SmolStr;
@@ -73,7 +74,7 @@ impl<'a> Checker<'a> {
             let set = cycle.iter().find_map(|&item| setting(&items[item]).zip(items[item].name()));
             self.report(match set {
                 Some((value, name)) => errors::cycle_of_setting(name, value.span, &names),
-                None => errors::cycle(&names),
+                None => errors::cycle(&names, self.goes_on_below(&items[cycle[0]])),
             });
         }
         let mut statements: Vec<Option<Statement>> = items.iter().map(|_| None).collect();
@@ -99,6 +100,14 @@ impl<'a> Checker<'a> {
         let sorted = order.windows(2).all(|pair| pair[0] < pair[1]);
         let order = if sorted { vec![] } else { order.into_iter().map(|index| index as u32).collect() };
         Block { statements, order }
+    }
+
+    /// Whether the value of a definition begins on a line below its name.
+    fn goes_on_below(&self, item: &Item) -> bool {
+        let Item::Statement(ast::Statement { kind: Tree::Definition { name, value, .. }, .. }) = item else {
+            return false;
+        };
+        self.text(Span { end: value.span.start, ..name.span }).contains('\n')
     }
 
     /// A body of `for` or `if`.
@@ -243,7 +252,11 @@ impl<'a> Checker<'a> {
         let category = making.kind.category();
         let inner = self.scopes.iter().any(|scope| matches!(scope.place, Place::Part | Place::Group));
         match making.kind {
-            _ if category == Category::Material => self.report(errors::material_drawn(&construct.kind)),
+            _ if category == Category::Material => {
+                self.report(errors::material_drawn(&construct.kind, name));
+                // Its name stands for it, as was meant.
+                return (StatementKind::Invalid, ty);
+            }
             Kind::BuiltIn(kind) if category == Category::Block && inner => {
                 self.report(errors::block_inside(&construct.kind, kind))
             }

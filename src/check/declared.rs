@@ -130,3 +130,14 @@ impl Checker<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::TYPES;
+    use crate::syntax::TYPE_WORDS;
+
+    #[test]
+    fn the_parser_knows_their_names() {
+        assert!(TYPES.iter().map(|(name, _)| name).eq(TYPE_WORDS));
+    }
+}

@@ -2,11 +2,13 @@
 //! their own.
 
 mod declared;
+mod guess;
 mod query;
 mod types;
 mod unknown;
 
 pub(super) use declared::*;
+pub(super) use guess::*;
 pub(super) use query::*;
 pub(super) use types::*;
 pub(super) use unknown::*;
@@ -20,43 +22,6 @@ use crate::span::Span;
 use crate::syntax::ast::{Keyword, Name, Path};
 use crate::units;
 
-/// The longest name that a guess is made for.
-const MAX_GUESSED: usize = 64;
-
-/// The candidate that is probably meant: at most a third of the letters away. Of a name of one letter another
-/// letter says nothing.
-pub(super) fn closest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
-    let length = name.chars().count();
-    let limit = match length {
-        0 | 1 => 0,
-        // Comparing takes time with the square of the length.
-        2..=MAX_GUESSED => (length / 3).max(1),
-        _ => return None,
-    };
-    let lower = name.to_lowercase();
-    candidates
-        .iter()
-        .filter(|candidate| candidate.chars().count().abs_diff(length) <= limit)
-        .map(|candidate| {
-            let distance = strsim::damerau_levenshtein(name, candidate);
-            // Another case of the same letters is the nearest miss there is; first letters are seldom wrong.
-            let distance = if candidate.to_lowercase() == lower { 0 } else { distance };
-            (distance, name.chars().next() != candidate.chars().next(), *candidate)
-        })
-        .filter(|(distance, ..)| *distance <= limit)
-        // Of two that are as far, the one with all the letters that were written is the likelier.
-        .min_by_key(|(distance, other_start, candidate)| {
-            (*distance, *other_start, !is_within(&lower, candidate))
-        })
-        .map(|(.., candidate)| candidate)
-}
-
-/// Whether the letters of a name are all in another, in this order.
-fn is_within(name: &str, other: &str) -> bool {
-    let mut letters = other.chars();
-    name.chars().all(|letter| letters.any(|other| other == letter))
-}
-
 fn quoted(names: &[&str]) -> String {
     list(names.iter().map(|name| format!("`{name}`")).collect(), "and")
 }
@@ -66,12 +31,24 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
         Diagnostic::new(code, format!("unknown {what} `{}`", name.text), name.span).at("not known here");
     // A unit of two letters is near to all others; only its first letter tells what was meant.
     let start = name.text.chars().next();
-    let same_start = |guess: &&str| what != "unit" || guess.chars().next() == start;
+    let same_start = |guess: &Guess| {
+        what != "unit" || guess.name.chars().next() == start || guess.name == name.text.to_lowercase()
+    };
     if let Some(help) = said_otherwise(what, &name.text) {
         return diagnostic.help(help);
     }
-    match closest(&name.text, candidates).filter(same_start) {
-        Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
+    let guess = closest(&name.text, candidates).filter(same_start);
+    // An exact word of elsewhere says more than what merely lies near.
+    let elsewhere =
+        || familiar::kind(&name.text).filter(|here| here.name.is_none_or(|name| candidates.contains(&name)));
+    match guess.filter(|_| what != "unit" || !name.text.contains(|c: char| c.is_ascii_digit())) {
+        Some(guess) if guess.certain => guess.ask(diagnostic, name.span, ""),
+        _ if what == "kind"
+            && let Some(here) = elsewhere() =>
+        {
+            with_familiar(diagnostic, here, name.span, candidates)
+        }
+        Some(guess) => guess.ask(diagnostic, name.span, ""),
         None if what == "unit" && is_side(&name.text) => {
             diagnostic.help("width and height are a pair: `(320, 240)`")
         }
@@ -79,12 +56,6 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
             diagnostic.help("micrometres are written `um`").fix(name.span, "um")
         }
         None if what == "unit" => diagnostic.help(format!("the units are {}", quoted(candidates))),
-        None if what == "kind"
-            && let Some(here) = familiar::kind(&name.text)
-                .filter(|here| here.name.is_none_or(|name| candidates.contains(&name))) =>
-        {
-            with_familiar(diagnostic, here, name.span, candidates)
-        }
         None if what == "kind" => diagnostic.help(format!("the kinds known here are {}", quoted(candidates))),
         None if what == "function" => diagnostic.help(format!("the functions are {}", quoted(candidates))),
         None if what == "name" => diagnostic.help(format!("declare it: `let {} = …`", name.text)),
@@ -102,6 +73,9 @@ fn said_otherwise(what: &str, name: &str) -> Option<String> {
         ("name", "pi" | "PI" | "Pi") => "half a turn is `180deg`, and as a number `180deg / 1rad`".into(),
         ("name", "yes" | "on" | "True" | "TRUE") => "write `true`".into(),
         ("name", "no" | "off" | "False" | "FALSE") => "write `false`".into(),
+        ("name", "f") => {
+            "an f-number is the number alone: `stop: 2.8`; any other value is declared: `let f = …`".into()
+        }
         ("name", _) => return undeclarable(name),
         ("function", "rotate") => "`turn` turns about one axis: `turn(y: 30deg)`".into(),
         ("function", "translate") => "`move` moves: `move(0, 1m, 0)`".into(),
@@ -109,6 +83,10 @@ fn said_otherwise(what: &str, name: &str) -> Option<String> {
         ("function", "vec3" | "vec" | "vector" | "Vector" | "point" | "float3" | "xyz") => {
             "three values stand in parentheses: `(0, 1, 0)m`".into()
         }
+        ("function", "hsl") => {
+            "`hsv(angle, s, v)` is another way to say a colour, with a value in place of a lightness".into()
+        }
+        ("function", "atan") => "the angle of a slope is `atan2(y, x)`".into(),
         ("function", "lerp") => "`mix(a, b, t)` lies between two values".into(),
         ("kind", "new") => "leave it out: a thing begins with its kind: `sphere { … }`".into(),
         ("kind", "while") => "`for` repeats: `for i in range(7) { … }`".into(),
@@ -176,7 +154,8 @@ pub(super) fn built_in(name: &Name, what: &str) -> Diagnostic {
 /// The most names of a cycle that are shown.
 const MAX_CYCLE: usize = 8;
 
-pub(super) fn cycle(names: &[&Name]) -> Diagnostic {
+/// `goes_on_below`: whether a value begins on the line below the name.
+pub(super) fn cycle(names: &[&Name], goes_on_below: bool) -> Diagnostic {
     let Some(first) = names.first() else {
         unreachable!("only what has a name can be used, and so lie on a cycle")
     };
@@ -194,6 +173,12 @@ pub(super) fn cycle(names: &[&Name]) -> Diagnostic {
     let mut diagnostic = Diagnostic::new(Code::E0104, message, first.span).at("the cycle begins here");
     for pair in shown.windows(2) {
         diagnostic = diagnostic.label(pair[1].span, format!("used by `{}`", pair[0].text));
+    }
+    if names.len() == 1 && goes_on_below {
+        return diagnostic.help(format!(
+            "the value goes on in the next line: if that begins something new, give `{}` a value before it",
+            first.text
+        ));
     }
     if names.len() == 1 && crate::color::named(&first.text).is_some() {
         let help = format!(
@@ -252,10 +237,13 @@ pub(super) fn not_a_kind(name: &Name, ty: &Type) -> Diagnostic {
     let help = match ty {
         Type::Thing(Making { kind: Kind::BuiltIn(kind), .. }) => format!(
             "to make several alike, name a prototype: `let {} = {} {{ … }}`",
-            name.text,
+            name.text.rsplit('.').next().unwrap_or(""),
             kind.get().name
         ),
-        Type::Thing(_) => format!("to make several alike, name a prototype: `let {} = … {{ … }}`", name.text),
+        Type::Thing(_) => format!(
+            "to make several alike, name a prototype: `let {} = … {{ … }}`",
+            name.text.rsplit('.').next().unwrap_or("")
+        ),
         _ => "a kind or a prototype stands before `{`".to_string(),
     };
     Diagnostic::new(
@@ -267,15 +255,16 @@ pub(super) fn not_a_kind(name: &Name, ty: &Type) -> Diagnostic {
     .help(help)
 }
 
-pub(super) fn material_drawn(path: &Path) -> Diagnostic {
+pub(super) fn material_drawn(path: &Path, given: Option<&Name>) -> Diagnostic {
     let name = path_text(path);
+    let given = given.map_or("NAME", |given| given.text.as_str());
     Diagnostic::new(
         Code::E0305,
         format!("`{name}` is a material, which is not drawn by itself"),
         path_span(path),
     )
     .at("no surface here")
-    .help(format!("name it with `material NAME = {name} {{ … }}`, or give it to a shape's `material`"))
+    .help(format!("name it with `material {given} = {name} {{ … }}`, or give it to a shape's `material`"))
 }
 
 pub(super) fn block_inside(path: &Path, kind: KindId) -> Diagnostic {
@@ -332,7 +321,7 @@ pub(super) fn unknown_field(
     let here = here.filter(|here| here.name.is_none_or(|name| all.contains(&name)));
     match (here, closest(&name.text, free)) {
         (Some(here), _) => with_familiar(diagnostic, here, name.span, free),
-        (None, Some(guess)) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
+        (None, Some(guess)) => guess.ask(diagnostic, name.span, ""),
         (None, None) if all.is_empty() => {
             diagnostic.help("what a material of any kind has is not known here; name one of them")
         }
@@ -413,7 +402,7 @@ pub(super) fn unknown_word(field: &Field, name: &Name, words: &[&str]) -> Diagno
         Diagnostic::new(Code::E0101, format!("`{}` does not know `{}`", field.name, name.text), name.span)
             .at("unknown word");
     match closest(&name.text, words) {
-        Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
+        Some(guess) => guess.ask(diagnostic, name.span, ""),
         None => diagnostic.help(format!("it wants {}", describe_wanted(field.ty))),
     }
 }

@@ -106,7 +106,7 @@ impl Checker<'_> {
             }
         };
         let factor = Expr { kind: ExprKind::Number(unit_found.factor), span };
-        (operation(BinaryOp::Multiply, [value, factor], &scaled), scaled)
+        (operation(BinaryOp::Multiply, units::NONE, [value, factor], &scaled), scaled)
     }
 
     fn tuple(&mut self, parts: &[ast::Expr], span: Span) -> (ExprKind, Type) {
@@ -188,7 +188,12 @@ impl Checker<'_> {
             Some(ty) => ty,
             None => return (ExprKind::Invalid, Type::Invalid),
         };
-        (operation(operator, [left, right], &ty), ty)
+        let dims = [&a, &b].map(|ty| match ty {
+            Type::Scalar(element) | Type::Tuple(_, element) => element.dim(),
+            _ => units::NONE,
+        });
+        let dim = if dims[0] == units::NONE { dims[1] } else { dims[0] };
+        (operation(operator, dim, [left, right], &ty), ty)
     }
 
     /// The type of an operation; none where it is wrong, and was reported.
@@ -289,13 +294,13 @@ impl Checker<'_> {
 }
 
 /// An operation that gives a value of a type. What gives a number, but for comparisons, is of numbers.
-fn operation(operator: BinaryOp, [left, right]: [Expr; 2], ty: &Type) -> ExprKind {
+fn operation(operator: BinaryOp, dim: units::Dim, [left, right]: [Expr; 2], ty: &Type) -> ExprKind {
     let (left, right) = (Box::new(left), Box::new(right));
     match (ty, Arithmetic::of(operator)) {
         (Type::Scalar(element), Some(operator)) => {
             ExprKind::Arithmetic { operator, left, right, int: *element == Element::Int }
         }
-        _ => ExprKind::Binary { operator, left, right },
+        _ => ExprKind::Binary { operator, dim, left, right },
     }
 }
 

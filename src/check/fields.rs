@@ -1,7 +1,7 @@
 //! The fields of what may stand before `{`: of built-in kinds, of parts, and of what may be any of them.
 
-use super::program::FieldPlace;
-use super::types::Kind;
+use super::program::{FieldPlace, PartId};
+use super::types::{Kind, Type};
 use super::{Checker, errors};
 use crate::schema::{PLACED, familiar};
 use crate::span::Span;
@@ -26,11 +26,22 @@ impl Checker<'_> {
     pub(super) fn kind_name(&self, kind: Kind) -> String {
         match kind {
             Kind::BuiltIn(kind) => kind.get().name.into(),
-            Kind::Part(part) if self.program.part(part).name.is_empty() => "the imported file".into(),
+            Kind::Part(part) if self.program.part(part).name.is_empty() => self.name_of_file(part),
             Kind::Part(part) => self.program.part(part).name.to_string(),
             Kind::Material => "material".into(),
             Kind::Thing => "thing".into(),
         }
+    }
+
+    /// What an imported file is called here.
+    fn name_of_file(&self, part: PartId) -> String {
+        let is_it =
+            |ty: &Type| matches!(ty, Type::File(file) if self.program.files[file.index()].part == part);
+        let known = self.scopes.iter().flat_map(|scope| &scope.known);
+        known
+            .into_iter()
+            .find(|known| is_it(&known.ty))
+            .map_or("the imported file".into(), |known| known.name.text.to_string())
     }
 
     /// The names of all fields of a kind.
@@ -90,13 +101,13 @@ impl Checker<'_> {
         self.report(diagnostic);
     }
 
-    /// The field that an unknown name probably means.
+    /// The field that an unknown name probably means, and whether its value is certainly meant for that.
     pub(super) fn probable_field(
         &self,
         kind: Kind,
         name: &Name,
         places: &[Option<Span>],
-    ) -> Option<FieldPlace> {
+    ) -> Option<(FieldPlace, bool)> {
         let all = self.field_names(kind);
         let free: Vec<&str> = all
             .iter()
@@ -104,9 +115,11 @@ impl Checker<'_> {
             .filter(|(_, place)| place.is_none())
             .map(|(name, _)| name.as_str())
             .collect();
-        let here =
-            familiar::field(&self.kind_name(kind), kind.category(), &name.text).and_then(|here| here.name);
-        let here = here.filter(|name| free.contains(name));
-        here.or_else(|| errors::closest(&name.text, &free)).and_then(|guess| self.find_field(kind, guess))
+        let here = familiar::field(&self.kind_name(kind), kind.category(), &name.text);
+        let here = here.and_then(|here| Some((here.name?, here.same_value)));
+        let here = here.filter(|(name, _)| free.contains(name));
+        let guess = || errors::closest(&name.text, &free).map(|guess| (guess.name, guess.certain));
+        let (name, certain) = here.or_else(guess)?;
+        Some((self.find_field(kind, name)?, certain))
     }
 }

@@ -4,7 +4,7 @@ use super::types::{Element, NUMBER, Type};
 use super::{Checker, Expr, ExprKind, errors, textures};
 use crate::schema::Category;
 use crate::span::Span;
-use crate::syntax::ast::Argument;
+use crate::syntax::ast::{Argument, ExprKind as Tree};
 use crate::units::{self, ANGLE, LENGTH, TEMPERATURE};
 
 macro_rules! functions {
@@ -106,6 +106,8 @@ functions! {
     Noise "noise" "noise(a, b, size, octaves, seed)",
     /// A picture from a file, laid on the surface.
     Image "image" "image(file, size)",
+    /// The rows of a table in a CSV file, as a list: `row.column` of each. The path is written out.
+    Table "table" "table(file)",
     /// A placement that enlarges about the origin.
     Scale "scale" "scale(k) or scale(x, y, z)",
     /// A placement that turns about one axis: from x to y about z, and so on.
@@ -129,8 +131,22 @@ impl Checker<'_> {
         arguments: &[Argument],
         span: Span,
     ) -> (ExprKind, Type) {
-        let (values, types): (Vec<Expr>, Vec<Type>) =
-            arguments.iter().map(|argument| self.infer(&argument.value)).unzip();
+        if let (Function::Turn, [angle, Argument { name: None, value: axis }]) = (function, arguments)
+            && let Tree::Name(name) = &axis.kind
+            && matches!(name.as_str(), "x" | "y" | "z")
+            && !self.is_declared(name)
+        {
+            self.infer(&angle.value);
+            let angle = self.text(angle.value.span);
+            self.report(errors::turn_axis(axis.span).help(format!("write `turn({name}: {angle})`")));
+            return (ExprKind::Invalid, Type::Invalid);
+        }
+        let (values, types): (Vec<Expr>, Vec<Type>) = (arguments.iter().enumerate())
+            .map(|(index, argument)| match (function, index) {
+                (Function::Image, 0) => self.infer_path(&argument.value),
+                _ => self.infer(&argument.value),
+            })
+            .unzip();
         if let Some(parameters) = textures::parameters(function) {
             let values = values.into_iter().zip(types).collect();
             return self.texture(function, parameters, arguments, values, span);
@@ -211,7 +227,7 @@ impl Checker<'_> {
         use Function::*;
         let counts: &[usize] = match function {
             Sin | Cos | Tan | Asin | Acos | Sqrt | Abs | Floor | Ceil | Round | Exp | Log | Length
-            | Normalize | Blackbody | Turn | Bounds => &[1],
+            | Normalize | Blackbody | Turn | Bounds | Table => &[1],
             Atan2 | Mod | Pow | Dot | Cross => &[2],
             Clamp | Mix | Rgb | Srgb | Hsv | Linspace => &[3],
             Scale | Move => &[1, 3],
@@ -260,6 +276,8 @@ impl Checker<'_> {
             Mix => arguments.mix(),
             // By their parameters.
             Checker | Stripes | Noise | Image => None,
+            // Is read where it stands.
+            Table => None,
             Length if matches!(types[0], Type::List(_)) => Some(Type::Scalar(Element::Int)),
             Length => arguments.triple(0, None).map(Type::Scalar),
             Range => arguments.whole(0..values.len()).map(|()| Type::list(Type::Scalar(Element::Int))),

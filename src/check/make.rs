@@ -68,6 +68,10 @@ impl Checker<'_> {
     fn kind_of(&mut self, path: &ast::Path) -> (Base, Option<Making>) {
         let name = &path.first;
         if let Some(kind) = schema::kind(&name.text) {
+            // Which of the two is meant is not known; that the name is taken was reported.
+            if self.hiding.contains(&kind) && self.is_declared(&name.text) {
+                return (Base::Invalid, None);
+            }
             return match path.rest.first() {
                 None => (Base::Kind(kind), Some(built_in(kind))),
                 Some(inner) => {
@@ -81,7 +85,10 @@ impl Checker<'_> {
             self.report_lost(&name.text, diagnostic);
             // What stands inside is looked at as if the kind had been spelt right.
             let built_ins: Vec<&str> = schema::KINDS.iter().map(|kind| kind.name).collect();
-            let guess = errors::closest(&name.text, &built_ins).and_then(schema::kind);
+            // What has another name elsewhere may have other fields too.
+            let guess = errors::closest(&name.text, &built_ins)
+                .filter(|guess| guess.certain || schema::familiar::kind(&name.text).is_none())
+                .and_then(|guess| schema::kind(guess.name));
             return (Base::Invalid, guess.map(built_in));
         };
         let mut ty = found.ty;
@@ -189,6 +196,8 @@ impl Checker<'_> {
         let kind = making.kind;
         let mut places: Vec<Option<Span>> = vec![None; self.field_count(kind)];
         let mut told = None;
+        // Where a field stands of which nothing is known.
+        let mut foreign = None;
         // Those that are only taken to be meant by another name.
         let mut guessed = vec![false; places.len()];
         for entry in entries {
@@ -202,14 +211,21 @@ impl Checker<'_> {
                     self.unknown_field(kind, name, &places, &mut told);
                 }
                 // A misspelt field counts as given.
-                if let Some(field) = self.probable_field(kind, name, &places) {
+                let mut meant = None;
+                if let Some((field, certain)) = self.probable_field(kind, name, &places) {
                     let bit = self.bit(kind, field);
                     places[bit] = Some(name.span);
                     guessed[bit] = true;
                     make.fields.push((field, Expr::invalid(name.span)));
+                    meant = Some(field).filter(|_| certain);
+                } else {
+                    foreign = Some(name.span);
                 }
-                if let Some(value) = value.filter(|value| !matches!(value.kind, Tree::Name(_))) {
-                    self.infer(value);
+                match (meant, value) {
+                    (Some(field), Some(value)) => drop(self.value_of_field(kind, field, value)),
+                    // A name may be a word that the field understands.
+                    (None, Some(value)) if !matches!(value.kind, Tree::Name(_)) => drop(self.infer(value)),
+                    _ => {}
                 }
                 continue;
             };
@@ -245,7 +261,7 @@ impl Checker<'_> {
             let kind = ExprKind::Make(Box::new(part));
             make.fields.push((FieldPlace::Index(*index), Expr { kind, span: construct.span }));
         }
-        self.lost_fields(make, making, entries);
+        self.lost_fields(make, making, entries, foreign);
         let mut own = FieldSet::default();
         for (place, _) in &make.fields {
             match (kind, place) {
@@ -260,21 +276,22 @@ impl Checker<'_> {
         }
     }
 
-    /// An entry of which nothing was understood may be any field: those that must be given count as given.
-    fn lost_fields(&self, make: &mut Unfinished, making: Making, entries: &[Entry]) {
+    /// An entry of which nothing was understood may be any field: those that must be given count as given. So does the
+    /// only one where a field stands that means nothing here.
+    fn lost_fields(&self, make: &mut Unfinished, making: Making, entries: &[Entry], foreign: Option<Span>) {
         let nameless = |entry: &Entry| match entry {
             Entry::Broken(ast::Broken { name: None, span }) => Some(*span),
             _ => None,
         };
-        let (Kind::BuiltIn(kind), Some(lost)) = (making.kind, entries.iter().find_map(nameless)) else {
-            return;
-        };
-        for (index, field) in kind.fields().enumerate() {
-            let place = FieldPlace::Index(index);
-            let given = making.given.has(index) || make.fields.iter().any(|(given, _)| *given == place);
-            if field.default == Preset::Required && !given {
-                make.fields.push((place, Expr::invalid(lost)));
-            }
+        let lost = entries.iter().find_map(nameless);
+        let (Kind::BuiltIn(kind), Some(place)) = (making.kind, lost.or(foreign)) else { return };
+        let missing: Vec<FieldPlace> = (kind.fields().enumerate())
+            .filter(|(index, field)| field.default == Preset::Required && !making.given.has(*index))
+            .map(|(index, _)| FieldPlace::Index(index))
+            .filter(|place| !make.fields.iter().any(|(given, _)| given == place))
+            .collect();
+        if lost.is_some() || missing.len() == 1 {
+            make.fields.extend(missing.into_iter().map(|field| (field, Expr::invalid(place))));
         }
     }
 

@@ -96,6 +96,8 @@ struct Checker<'a> {
     lost: Vec<(usize, SmolStr)>,
     /// What the scopes declared that were closed in this file.
     closed: BTreeMap<SmolStr, Span>,
+    /// The kinds whose names something declares, which was reported.
+    hiding: Vec<crate::schema::KindId>,
     /// The names of the cameras of the file.
     cameras: Vec<SmolStr>,
     /// How many declared names may still be compared with unknown ones.
@@ -125,6 +127,7 @@ impl<'a> Checker<'a> {
             diagnostics: vec![],
             lost: vec![],
             closed: BTreeMap::new(),
+            hiding: vec![],
             cameras: vec![],
             guesses: Cell::new(MAX_GUESSES),
             nodes: 0,

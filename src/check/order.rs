@@ -1,5 +1,6 @@
 //! In which order the statements of a scope can be evaluated.
 
+use super::functions::by_name;
 use super::make::find_word;
 use super::scope::Item;
 use crate::schema;
@@ -90,7 +91,10 @@ fn names_in(expr: &ast::Expr, visit: &mut impl FnMut(&str)) {
         Tree::Construct(construct) => names_in_construct(construct, visit),
         Tree::Tuple(parts) | Tree::List(parts) => parts.iter().for_each(|part| names_in(part, visit)),
         Tree::Call { function, arguments } => {
-            visit(&function.first.text);
+            // A built-in function is itself, whatever declares its name, which was reported.
+            if !function.rest.is_empty() || by_name(&function.first.text).is_none() {
+                visit(&function.first.text);
+            }
             arguments.iter().for_each(|argument| names_in(&argument.value, visit));
         }
         Tree::Scaled { value, .. } | Tree::Paren(value) | Tree::Member { value, .. } => {

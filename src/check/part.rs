@@ -8,7 +8,9 @@ use super::scope::{Item, Place};
 use super::types::Type;
 use super::{Checker, errors};
 use crate::diagnostic::{Code, Diagnostic, Severity};
-use crate::schema::{PLACED, camera};
+use crate::schema::{self, Category, PLACED, camera};
+use crate::span::Span;
+use crate::syntax;
 use crate::syntax::ast::StatementKind as TreeStatement;
 use crate::syntax::ast::{self, BinaryOp, ExprKind as Tree, Name, Parameter, TypeName};
 use smol_str::SmolStr;
@@ -115,8 +117,11 @@ impl<'a> Checker<'a> {
         range: Option<&ast::Expr>,
         place: Place,
     ) -> (StatementKind, Type) {
+        if PLACED.iter().any(|field| name.text == field.name) && !syntax::RESERVED.contains(&&*name.text) {
+            self.report(errors::param_hides_field(name));
+        }
         let declared = self.declared(ty);
-        let mut value = self.declared_value(&name.text, &declared, default);
+        let (mut value, fits) = self.fitting_value(&name.text, &declared, default);
         let range_found = range.and_then(|range| self.range(name, &declared, range));
         let outside = range_found.as_ref().and_then(|range| self.literal_outside(&name.text, &value, range));
         if let Some(diagnostic) = outside {
@@ -132,7 +137,8 @@ impl<'a> Checker<'a> {
         if let Some(setting) = set {
             value = self.declared_value(&name.text, &declared, &setting.value);
         }
-        let ty = declared.ty();
+        // Of a type that its default does not have, which of the two was meant is not known.
+        let ty = if fits { declared.ty() } else { Type::Invalid };
         let doc = self.doc.take();
         let default = self.text(default.span).into();
         let scope = self.current();
@@ -195,13 +201,18 @@ impl<'a> Checker<'a> {
 
     /// A value where a type was declared.
     pub(super) fn declared_value(&mut self, name: &str, declared: &Declared, value: &ast::Expr) -> Expr {
+        self.fitting_value(name, declared, value).0
+    }
+
+    /// The same, and whether the value is of the type, as far as both are known.
+    fn fitting_value(&mut self, name: &str, declared: &Declared, value: &ast::Expr) -> (Expr, bool) {
         if let Some(diagnostic) = self.unknown_declared(declared, value) {
             self.report_lost(&self.text(value.span).into(), diagnostic);
-            return Expr::invalid(value.span);
+            return (Expr::invalid(value.span), true);
         }
         let (checked, ty) = self.infer(value);
         if ty == Type::Invalid || *declared == Declared::Invalid {
-            return Expr::invalid(value.span);
+            return (Expr::invalid(value.span), true);
         }
         if !declared.accepts(&ty) {
             let text = self.text(value.span);
@@ -209,13 +220,14 @@ impl<'a> Checker<'a> {
                 Declared::Field(field) => errors::mismatch(name, *field, value.span, text, &ty),
                 other => errors::mismatch_declared(name, &other.describe(), value.span, &ty),
             };
-            self.report(diagnostic);
-            return Expr::invalid(value.span);
+            let set = self.is_setting(value.span);
+            self.report(if set { errors::in_setting(diagnostic, name) } else { diagnostic });
+            return (Expr::invalid(value.span), false);
         }
         if let Type::Made(making) = ty {
             self.complete(making, value.span);
         }
-        checked
+        (checked, true)
     }
 
     /// `import "file.rt" as name`
@@ -258,7 +270,8 @@ impl<'a> Checker<'a> {
         }
         let result = self.declared(result);
         self.scopes.push(scope);
-        let value = self.declared_value(&name.text, &result, value);
+        let (value, fits) = self.fitting_value(&name.text, &result, value);
+        let result = if fits { result } else { Declared::Invalid };
         self.close(None);
         let slots = self.end_frame();
         self.program.functions.push(FunctionBody {
@@ -290,7 +303,7 @@ impl<'a> Checker<'a> {
                     self.report(errors::prefix_arguments(prefix));
                 }
                 "off" if drawn || asserts => off = true,
-                "solo" if drawn => solo = true,
+                "solo" if drawn && !is_block(statement) => solo = true,
                 "off" | "solo" => self.report(errors::prefix_on_what(prefix)),
                 "allow" => self.allow(prefix, statement),
                 "" => {}
@@ -315,7 +328,10 @@ impl<'a> Checker<'a> {
             Code::ALL.iter().copied().find(|code| *written == *code.as_str() || *written == code.name());
         match found {
             Some(code) if code.severity() == Severity::Warning => {
-                self.program.allows.push(Allow { code, on: statement.span, span: prefix.span });
+                let behind = &self.sources.get(prefix.span.source).text[prefix.span.range().end..];
+                let blank = behind.len() - behind.trim_ascii_start().len();
+                let all = Span { end: prefix.span.end + blank as u32, ..prefix.span };
+                self.program.allows.push(Allow { code, on: statement.span, span: prefix.span, all });
             }
             Some(code) => self.report(errors::allow_error(code, prefix)),
             None => {
@@ -330,6 +346,13 @@ impl<'a> Checker<'a> {
         let part = self.program.part(self.program.files[file.index()].part);
         self.program.insides[part.inside.index()].names.get(name)
     }
+}
+
+/// Whether it is one of the blocks that say how the picture is taken, which is no part of it.
+fn is_block(statement: &ast::Statement) -> bool {
+    let TreeStatement::Thing { construct, .. } = &statement.kind else { return false };
+    let kind = schema::kind(&construct.kind.first.text);
+    kind.is_some_and(|kind| kind.get().category == Category::Block)
 }
 
 /// The name of a camera.

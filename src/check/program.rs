@@ -158,6 +158,8 @@ pub struct Allow {
     pub on: Span,
     /// The prefix itself.
     pub span: Span,
+    /// The same with the white space behind it, which goes with it.
+    pub all: Span,
 }
 
 /// The statements of one scope.
@@ -376,6 +378,8 @@ pub enum ExprKind {
     Binary {
         /// The operator.
         operator: BinaryOp,
+        /// What is compared, where it has a dimension.
+        dim: Dim,
         /// Left operand.
         left: Box<Expr>,
         /// Right operand.

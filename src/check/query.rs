@@ -48,15 +48,19 @@ impl Checker<'_> {
 
     /// `low to high`: whole numbers, both included.
     pub(super) fn to(&mut self, left: Expr, right: Expr, types: [Type; 2]) -> (ExprKind, Type) {
-        let mut sound = true;
-        for (end, ty) in [&left, &right].into_iter().zip(&types) {
-            if !matches!(ty, Type::Scalar(element) if element.is_int()) {
-                sound = false;
-                self.report(errors::to_of_what(end.span, ty));
+        let ends: Vec<(Span, &Type)> = [left.span, right.span].into_iter().zip(&types).collect();
+        let wrong = |(_, ty): &&(Span, &Type)| !matches!(ty, Type::Scalar(element) if element.is_int());
+        let wrong: Vec<_> = ends.iter().filter(wrong).collect();
+        let sound = wrong.is_empty();
+        match wrong[..] {
+            // One slip.
+            [(first, a), (second, b)] if a.describe() == b.describe() => {
+                self.report(errors::to_of_what(*first, a).label(*second, "so is this"));
             }
+            _ => wrong.iter().for_each(|(end, ty)| self.report(errors::to_of_what(*end, ty))),
         }
         let (left, right) = (Box::new(left), Box::new(right));
-        let kind = ExprKind::Binary { operator: ast::BinaryOp::To, left, right };
+        let kind = ExprKind::Binary { operator: ast::BinaryOp::To, dim: units::NONE, left, right };
         if sound { (kind, Type::list(Type::Scalar(Element::Int))) } else { INVALID }
     }
 
@@ -190,8 +194,13 @@ impl Checker<'_> {
             }
             return (ExprKind::Inside { value: Box::new(value), slot: name.slot }, name.ty);
         }
+        if found.is_some() {
+            let (prototype, kind) = (self.text(value.span), self.kind_name(making.kind));
+            self.report(errors::inside_prototype(prototype, member, &kind));
+            return INVALID;
+        }
         let Some(place) = self.find_field(making.kind, &member.text) else {
-            let mut names: Vec<String> = inside.map_or(vec![], |inside| {
+            let mut names: Vec<String> = inside.filter(|_| drawn).map_or(vec![], |inside| {
                 self.program.insides[inside.index()].names.keys().map(|name| name.to_string()).collect()
             });
             names.extend(self.field_names(making.kind));

@@ -6,7 +6,7 @@ use super::{Checker, ExprKind, errors, functions};
 use crate::schema;
 use crate::syntax::Rows;
 use crate::syntax::ast::{self, Name, StatementKind as Tree};
-use crate::{color, units};
+use crate::{color, syntax, units};
 use smol_str::SmolStr;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -228,6 +228,7 @@ impl Checker<'_> {
 
     fn report_shadowing(&mut self, name: &Name) {
         if let Some(diagnostic) = self.shadows(name) {
+            self.hiding.extend(schema::kind(&name.text));
             self.report(diagnostic);
         }
     }
@@ -242,7 +243,10 @@ impl Checker<'_> {
         if let Some(outer) = outer {
             return Some(errors::shadows(name, outer));
         }
-        let what = if units::is_unit(&name.text) {
+        // What is wrong with a word of the language as a name was said.
+        let what = if syntax::RESERVED.contains(&name.text.as_str()) {
+            return None;
+        } else if units::is_unit(&name.text) {
             "a unit"
         } else if schema::kind(&name.text).is_some() {
             "a built-in kind"

@@ -36,8 +36,10 @@ pub fn blame(settings: &[Setting], sources: &Sources, main: SourceId, diagnostic
 pub fn settings(sources: &mut Sources, given: &[String]) -> (Vec<Setting>, Vec<Diagnostic>) {
     let mut settings: Vec<Setting> = vec![];
     let mut diagnostics = vec![];
-    for text in given {
-        let source = sources.add(Source::new("--set", text.as_str()));
+    for (index, text) in given.iter().enumerate() {
+        // Of several, each has its number.
+        let name = if given.len() == 1 { "--set".into() } else { format!("--set#{}", index + 1) };
+        let source = sources.add(Source::new(&name, text.as_str()));
         let whole = Span::new(source, 0, text.len());
         let Some((name, value)) = text.split_once('=') else {
             diagnostics.push(errors::malformed_setting(whole));

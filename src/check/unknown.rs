@@ -2,7 +2,7 @@
 
 use super::declared::Declared;
 use super::types::Type;
-use super::{Checker, errors};
+use super::{Checker, Expr, errors};
 use crate::diagnostic::Diagnostic;
 use crate::schema::{self, FieldType};
 use crate::span::Span;
@@ -14,11 +14,8 @@ impl Checker<'_> {
     pub(super) fn unknown_value(&mut self, wanted: FieldType, value: &ast::Expr) -> Option<Diagnostic> {
         let first = match &value.kind {
             Tree::Name(name) => name,
-            // What looks like a member may be the end of a file's name.
-            Tree::Member { value, .. } if wanted == FieldType::Text => match &value.kind {
-                Tree::Name(name) => name,
-                _ => return None,
-            },
+            // What looks like a member, or a division, may be the name of a file.
+            _ if wanted == FieldType::Text => first_of_path(value)?,
             _ => return None,
         };
         if self.lookup(first).is_some() {
@@ -40,6 +37,17 @@ impl Checker<'_> {
         }
     }
 
+    /// The type of what should be the path of a file.
+    pub(super) fn infer_path(&mut self, value: &ast::Expr) -> (Expr, Type) {
+        match self.unknown_value(FieldType::Text, value) {
+            Some(diagnostic) => {
+                self.report(diagnostic);
+                (Expr::invalid(value.span), Type::Invalid)
+            }
+            None => self.infer(value),
+        }
+    }
+
     /// The declared name that a text in quotes is, and what it names.
     pub(super) fn quoted(&mut self, value: &ast::Expr) -> Option<(Name, Type)> {
         let Tree::Text(text) = &value.kind else { return None };
@@ -50,5 +58,18 @@ impl Checker<'_> {
     /// Whether a place lies in a setting from outside.
     pub(super) fn is_setting(&self, span: Span) -> bool {
         self.settings.iter().any(|setting| setting.value.span.source == span.source)
+    }
+}
+
+/// The first name of what may be the path of a file without quotes: `maps/oak.png`.
+fn first_of_path(value: &ast::Expr) -> Option<&SmolStr> {
+    match &value.kind {
+        Tree::Name(name) => Some(name),
+        Tree::Member { value, .. } => first_of_path(value),
+        Tree::Binary { operator: ast::BinaryOp::Divide, left, right, .. } => {
+            first_of_path(right)?;
+            first_of_path(left)
+        }
+        _ => None,
     }
 }

@@ -17,6 +17,7 @@ pub fn run(arguments: &Expand, terminal: Terminal, interrupt: &Interrupt) -> Res
     let Some(scene) = &loaded.compiled.scene else { return Ok(Exit::Diagnostics) };
     let own = &loaded.sources.get(loaded.id).path;
     let place = match &arguments.output {
+        Some(path) if !has_folder(path) => return Err(no_folder(path)),
         Some(path) if names_files(scene) => loaded.files.path_of(path).map_err(|_| outside(path))?,
         _ => own.clone(),
     };
@@ -38,6 +39,16 @@ pub fn run(arguments: &Expand, terminal: Terminal, interrupt: &Interrupt) -> Res
 fn names_files(scene: &Scene) -> bool {
     let mesh = |primitive: &Primitive| matches!(primitive.shape, Shape::Mesh(_));
     !scene.images.is_empty() || scene.primitives.iter().any(mesh)
+}
+
+/// Whether the folder is there that a file is to be written into.
+fn has_folder(path: &Path) -> bool {
+    path.parent().is_none_or(|folder| folder.as_os_str().is_empty() || folder.is_dir())
+}
+
+fn no_folder(path: &Path) -> Problem {
+    let folder = path.parent().unwrap_or(path).display();
+    Problem::new(format!("cannot write `{}`: there is no folder `{folder}`", path.display()))
 }
 
 fn outside(path: &Path) -> Problem {

@@ -8,6 +8,7 @@ use super::terminal::Terminal;
 use super::{Exit, Problem};
 use rt_lang::files::FileError;
 use rt_lang::inventory::{Param, bounds};
+use rt_lang::lower::Overrides;
 use rt_lang::math::DVec3;
 use rt_lang::render;
 use rt_lang::scene::{Scene, Target};
@@ -16,7 +17,10 @@ use std::fmt::Write;
 
 /// Prints it, to be read or as one JSON object.
 pub fn run(arguments: &Info, terminal: Terminal) -> Result<Exit, Problem> {
-    let loaded = scene::load(&arguments.scene, &arguments.reading, &arguments.viewpoint.overrides())?;
+    let overrides = arguments.viewpoint.overrides();
+    // No picture is taken, so none of several cameras has to be chosen.
+    let overrides = Overrides { every_camera: overrides.camera.is_none(), ..overrides };
+    let loaded = scene::load(&arguments.scene, &arguments.reading, &overrides)?;
     terminal.diagnostics(&loaded.compiled.diagnostics, &loaded.sources);
     let Some(scene) = &loaded.compiled.scene else { return Ok(Exit::Diagnostics) };
     let text = if arguments.json { format!("{}\n", object(&loaded, scene)) } else { words(&loaded, scene) };

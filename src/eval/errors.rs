@@ -305,9 +305,46 @@ pub(super) fn empty_range(param: &Param, [low, high]: [f64; 2], range: Span) -> 
         .help("the lower end comes first")
 }
 
+/// The two sides of a comparison that does not hold, as they are written to be read.
+pub(super) struct Sides {
+    /// `2.54cm == 3cm`
+    shown: String,
+    /// Whether they differ by less than that shows: by rounding.
+    rounded: bool,
+}
+
+/// What stands on both sides of a comparison; none where it is none, or they cannot be said in a few words.
+pub(super) fn sides(operator: BinaryOp, dim: Dim, values: &[Value; 2]) -> Option<Sides> {
+    use BinaryOp::*;
+    if !matches!(operator, Equal | NotEqual | Less | LessEqual | Greater | GreaterEqual) {
+        return None;
+    }
+    let one = |value: &Value| match value {
+        Value::Number(x) => Some(show_quantity(*x, dim)),
+        Value::Tuple(v) => {
+            let unit = dim.example_unit();
+            let factor = units::parse_unit(&unit).map_or(1.0, |unit| unit.factor);
+            Some(format!("{}{unit}", show_value(&Value::Tuple(*v / factor))))
+        }
+        Value::Bool(value) => Some(value.to_string()),
+        Value::Text(text) if text.len() < 40 => Some(format!("\"{text}\"")),
+        _ => None,
+    };
+    let [left, right] = [one(&values[0])?, one(&values[1])?];
+    let rounded = left == right && operator == Equal;
+    Some(Sides { shown: format!("{left} {} {right}", operator.symbol()), rounded })
+}
+
 /// What must hold does not.
-pub(super) fn assertion(message: Option<&str>, condition: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0405, message.unwrap_or("this does not hold"), condition).at("does not hold")
+pub(super) fn assertion(message: Option<&str>, condition: Span, sides: Option<Sides>) -> Diagnostic {
+    let diagnostic = Diagnostic::new(Code::E0405, message.unwrap_or("this does not hold"), condition);
+    match sides {
+        None => diagnostic.at("does not hold"),
+        Some(Sides { shown, rounded: false }) => diagnostic.at(format!("`{shown}` does not hold")),
+        Some(Sides { shown, rounded: true }) => diagnostic
+            .at(format!("`{shown}` but for rounding"))
+            .help("computed values are rounded: ask whether they are close, as in `abs(a - b) < 1um`"),
+    }
 }
 
 pub(super) fn endless_bounds(span: Span, thing: Span) -> Diagnostic {

@@ -73,7 +73,7 @@ impl Evaluator<'_> {
                 (UnaryOp::Not, Value::Bool(x)) => Value::Bool(!x),
                 _ => Value::Invalid,
             },
-            ExprKind::Binary { operator, left, right } => {
+            ExprKind::Binary { operator, left, right, .. } => {
                 let left = self.expr(left);
                 // What follows `and` or `or` is asked only where it matters.
                 match (operator, &left) {

@@ -2,7 +2,7 @@
 
 use super::origin::Way;
 use super::{Evaluator, Given, Value, errors};
-use crate::check::{Block, Expr, Make, Statement, StatementKind, Variable};
+use crate::check::{Block, Expr, ExprKind, Make, Statement, StatementKind, Variable};
 use crate::span::Span;
 use crate::syntax::Rows;
 use std::collections::BTreeMap;
@@ -172,7 +172,14 @@ impl Evaluator<'_> {
             Some(Value::Text(text)) => Some(text),
             _ => None,
         };
-        self.report(errors::assertion(message.as_deref(), condition.span));
+        let sides = match &condition.kind {
+            ExprKind::Binary { operator, dim, left, right } => {
+                let sides = [self.expr(left), self.expr(right)];
+                errors::sides(*operator, *dim, &sides)
+            }
+            _ => None,
+        };
+        self.report(errors::assertion(message.as_deref(), condition.span, sides));
     }
 
     /// Gives a param its value: as set, or its default; in its range.

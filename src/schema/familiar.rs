@@ -67,9 +67,11 @@ fn shape(kind: &str, name: &str) -> Option<Familiar> {
         ("cylinder" | "cone" | "paraboloid", "h" | "length") => {
             renamed("height", "`height` is along its axis")
         }
-        ("sphere", "size") | ("sphere" | "disk" | "cylinder" | "cone" | "paraboloid", "d" | "diameter") => {
-            rewritten("radius", "`radius` is half of the diameter")
-        }
+        ("sphere", "size")
+        | (
+            "sphere" | "disk" | "cylinder" | "cone" | "paraboloid",
+            "d" | "diameter" | "diametre" | "diam" | "width",
+        ) => rewritten("radius", "`radius` is half of the diameter"),
         ("box", "min" | "max" | "from" | "to" | "corner" | "corner1" | "corner2") => {
             rewritten("size", "a box stands around `at` with its `size`: `at: (0, 1, 0)m, size: (2, 2, 2)m`")
         }
@@ -119,8 +121,22 @@ fn material(kind: &str, name: &str) -> Option<Familiar> {
 }
 
 fn light(kind: &str, name: &str) -> Option<Familiar> {
-    const MUCH: [&str; 8] =
-        ["intensity", "strength", "energy", "brightness", "emission", "flux", "watts", "luminosity"];
+    const MUCH: [&str; 14] = [
+        "intensity",
+        "strength",
+        "energy",
+        "brightness",
+        "emission",
+        "flux",
+        "watts",
+        "wattage",
+        "luminosity",
+        "lumens",
+        "lumen",
+        "lm",
+        "candela",
+        "lux",
+    ];
     let much = MUCH.contains(&name);
     Some(match (kind, name) {
         ("light", "position" | "pos" | "location" | "center" | "centre" | "from" | "origin") => {

@@ -68,6 +68,8 @@ pub(super) struct Builder<'t> {
     foreign: Cell<Option<Span>>,
     /// Whether a body without braces was complained of; once an item is enough, as its `else` then has none either.
     pub(super) unbraced: Cell<bool>,
+    /// Whether a param can stand where it is: in a file or a part, outside of things.
+    pub(super) declares: Cell<bool>,
 }
 
 impl<'t> Builder<'t> {
@@ -81,6 +83,7 @@ impl<'t> Builder<'t> {
             deep: Cell::new(false),
             foreign: Cell::new(None),
             unbraced: Cell::new(false),
+            declares: Cell::new(true),
         }
     }
 
@@ -370,7 +373,9 @@ impl<'t> Builder<'t> {
     /// in another language: that is one slip, whatever else it makes wrong.
     pub(super) fn construct(&self, mut kind: Vec<Name>, body: Node<'t>) -> Deep<Option<Construct>> {
         let (known, around) = (self.reported(), self.foreign.take());
+        let declares = self.declares.replace(false);
         let (body, depth) = self.body(body);
+        self.declares.set(declares);
         if let Some(angled) = self.foreign.replace(around) {
             self.sink.borrow_mut().truncate(known);
             self.report(errors::foreign_body(&kind[0].text, kind[0].span, angled));
@@ -474,7 +479,7 @@ impl<'t> Builder<'t> {
         let name = self.name(&inner.next().expect("a definition has a name"));
         let sign = inner.next().expect("a definition has `=` or `:`");
         let (value, depth) = self.expression(inner);
-        if sign.as_str() == ":" {
+        if matches!(sign.as_str(), ":" | ":=") {
             let place = self.span(&sign);
             let edit = self.at(name.span.range().end - self.base, sign.as_span().end());
             self.report(errors::colon_in_definition(keyword.as_str(), &name.text, place, edit));

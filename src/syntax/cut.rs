@@ -6,7 +6,7 @@
 //! mending is *blotted* with [`BLOT`], which the grammar reads as a value that was already reported.
 //!
 //! A line end does not separate inside parentheses, behind an operator, `=`, `:` or a prefix such as `@off`, and
-//! before a line that starts with a binary operator other than `-`, with a word that goes on with a statement such
+//! before a line that starts with `->` or a binary operator other than `-`, with a word that goes on with a statement such
 //! as `else`, with `.member` or with `{`.
 
 mod brackets;

@@ -319,6 +319,13 @@ pub(super) fn missing_equals(keyword: &str, name: &str, span: Span) -> Diagnosti
         .help(format!("write `{keyword} {name} = {value}`"))
 }
 
+/// `let f(x) = 2 * x`
+pub(super) fn function_by_let(keyword: &str, name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("`{keyword} {name}` takes no parameters"), span)
+        .at("names one value")
+        .help(format!("a function is written `fn {name}(x: number) -> number = …`"))
+}
+
 /// `let = 5`, `let`
 pub(super) fn missing_name(keyword: &str, span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0001, format!("a name is missing after `{keyword}`"), span)

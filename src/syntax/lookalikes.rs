@@ -47,13 +47,15 @@ pub(super) fn read<'t>(source: SourceId, text: &'t str, sink: &mut Sink) -> Read
     if text.is_ascii() {
         return Read { text: Cow::Borrowed(text), places: vec![] };
     }
-    let mut reader = Reader { source, text, found: BTreeMap::new(), places: vec![], bytes: None };
+    let mut reader =
+        Reader { source, text, found: BTreeMap::new(), places: vec![], quotes: vec![], bytes: None };
     reader.run();
     for (first, places) in reader.found.values() {
         if let Some(diagnostic) = errors::lookalike(*first, places) {
             sink.push(diagnostic);
         }
     }
+    errors::quoted_values(&reader.quotes).into_iter().for_each(|diagnostic| sink.push(diagnostic));
     let text = match reader.bytes.map(String::from_utf8) {
         Some(Ok(text)) => Cow::Owned(text),
         _ => Cow::Borrowed(text),
@@ -92,6 +94,14 @@ fn is_quote(character: char) -> bool {
     matches!(character, '“' | '”' | '„' | '‟' | '＂')
 }
 
+/// Whether a text is a quantity or the code of a colour, which no name of a file is.
+fn is_value(text: &str) -> bool {
+    let number = text.trim_start_matches('-').trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
+    let digits = text.trim_start_matches('-').starts_with(|c: char| c.is_ascii_digit());
+    digits && units::is_unit(number)
+        || text.strip_prefix('#').is_some_and(|code| code.bytes().all(|byte| byte.is_ascii_hexdigit()))
+}
+
 /// Where one stands, and what it looks like.
 type Place = (Span, &'static str);
 
@@ -110,6 +120,8 @@ struct Reader<'t> {
     found: BTreeMap<Group, (char, Vec<Place>)>,
     /// Where all of them stand, those that touch as one.
     places: Vec<Span>,
+    /// The quotes around values that have none.
+    quotes: Vec<Span>,
     /// The text as it is read, once that differs.
     bytes: Option<Vec<u8>>,
 }
@@ -126,7 +138,9 @@ impl Reader<'_> {
                 '/' if rest.starts_with("/*") => at + rest[2..].find("*/").map_or(rest.len(), |end| end + 4),
                 _ if is_quote(character) => self.quoted(at, character),
                 _ => {
-                    if let Some(means) = looks_like(character) {
+                    if let Some(means) =
+                        looks_like(character).filter(|means| *means != "-" || self.subtracts(at))
+                    {
                         let means = if means == " " && self.parts_unit(at, next) { "" } else { means };
                         self.replace(at, character, means, false);
                     }
@@ -136,12 +150,24 @@ impl Reader<'_> {
         }
     }
 
+    /// Whether what stands before a dash can have something subtracted from it, or takes a value behind it: behind a
+    /// body it begins words that are no part of the scene.
+    fn subtracts(&self, at: usize) -> bool {
+        let before = self.text[..at].trim_end_matches([' ', '\t']);
+        !(before.is_empty() || before.ends_with(['}', '\n']))
+    }
+
     /// A text in curly quotes. Without its end on the line, they are left as they are.
     fn quoted(&mut self, at: usize, opener: char) -> usize {
         let inside = at + opener.len_utf8();
         let end = self.text[inside..].find(|c| c == '"' || c == '\n' || is_quote(c));
         let closer = end.and_then(|end| self.text[inside + end..].chars().next().map(|c| (inside + end, c)));
         match closer {
+            Some((end, closer)) if closer != '\n' && closer != '"' && is_value(&self.text[inside..end]) => {
+                self.blank(at, opener);
+                self.blank(end, closer);
+                end + closer.len_utf8()
+            }
             Some((end, closer)) if closer != '\n' => {
                 self.replace(at, opener, "\"", true);
                 if closer != '"' {
@@ -159,6 +185,18 @@ impl Reader<'_> {
         let rest = &self.text[next..];
         let word = &rest[..rest.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(rest.len())];
         number && (rest.starts_with('%') || units::is_unit(word) && word != "in")
+    }
+
+    /// Takes a quote away that stands beside a value.
+    fn blank(&mut self, at: usize, character: char) {
+        let length = character.len_utf8();
+        let place = Span::new(self.source, at, at + length);
+        if self.quotes.len() < MAX_PLACES {
+            self.quotes.push(place);
+        }
+        self.places.push(place);
+        let bytes = self.bytes.get_or_insert_with(|| self.text.as_bytes().to_vec());
+        bytes[at..at + length].fill(b' ');
     }
 
     /// Puts what a character looks like in its place, at its end or at its beginning, beside blanks.

@@ -8,6 +8,7 @@
 
 mod angled;
 pub mod ast;
+mod branches;
 mod build;
 mod cut;
 mod docs;
@@ -34,6 +35,28 @@ use rayon::prelude::*;
 pub const RESERVED: &[&str] = &[
     "let", "material", "and", "or", "not", "true", "false", "param", "part", "import", "as", "for", "in",
     "if", "then", "else", "fn", "to", "assert",
+];
+
+/// The words that name types, as far as the form of a statement depends on them: `param int count` is the wrong way
+/// round. What they mean is not known here.
+pub const TYPE_WORDS: &[&str] = &[
+    "number",
+    "int",
+    "bool",
+    "text",
+    "color",
+    "texture",
+    "material",
+    "thing",
+    "transform",
+    "point",
+    "vector",
+    "length",
+    "angle",
+    "power",
+    "radiance",
+    "temperature",
+    "area",
 ];
 
 /// White space within a line, as the grammar has it. With the line end it is what Rust calls ASCII white space.

@@ -2,7 +2,7 @@
 
 use super::BLANKS;
 use super::angled;
-use super::ast::{Broken, Entry, Expr, ExprKind, Field, Name, StatementKind};
+use super::ast::{Broken, Entry, Expr, ExprKind, Field, Name, StatementKind, TypeName};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements};
 use super::value;
@@ -89,8 +89,31 @@ impl<'t> Builder<'t> {
             }
             _ => {}
         }
+        if let Some(typed) = self.typed(&name, &value, span) {
+            return typed;
+        }
         let (value, depth) = value::expression(self, value);
         (Entry::Field(Field { name, value }), depth)
+    }
+
+    /// `h: length = 1m`: a param without its word, or a field with a type.
+    fn typed(&self, name: &Name, value: &Node<'t>, span: Span) -> Option<Deep<Entry>> {
+        // Most values are looked at no further.
+        value.clone().into_inner().nth(1).filter(|sign| sign.as_rule() == Rule::foreign_equals)?;
+        let (ty, sign, given) = value::at_equals(value)?;
+        let word = ty.first().filter(|word| super::TYPE_WORDS.contains(&word.as_str().trim_ascii_end()))?;
+        let place = self.trimmed(word);
+        let ty = Name { text: word.as_str().trim_ascii_end().into(), span: place };
+        let (default, depth) = value::part_of(self, given);
+        if !self.declares.get() {
+            let edit = Span { start: name.span.end, ..self.span(&sign) };
+            self.report(statements::type_in_field(&name.text, place, edit));
+            return Some((Entry::Field(Field { name: name.clone(), value: default }), depth));
+        }
+        self.report(statements::missing_param(name, &ty.text));
+        let param =
+            StatementKind::Param { name: name.clone(), ty: TypeName::Named(ty), default, range: None };
+        Some(self.checked(self.plain(param, span), depth + 1, span))
     }
 
     /// `sphere: { radius: 1m }`, `sphere = { radius: 1m }` at the top level. The value begins with the body.
@@ -223,6 +246,10 @@ impl<'t> Builder<'t> {
             return (Entry::Broken(Broken { name: Some(name), span }), 0);
         }
         let place = self.span(keyword).to(name.span);
+        if text[name.text.len()..].trim_start_matches(BLANKS).starts_with('(') {
+            self.report(errors::function_by_let(keyword.as_str(), &name.text, place));
+            return (Entry::Broken(Broken { name: Some(name), span }), 0);
+        }
         self.report(errors::missing_equals(keyword.as_str(), &name.text, place));
         (Entry::Broken(Broken { name: Some(name), span }), 0)
     }

@@ -4,7 +4,7 @@
 use super::ast::{Body, Broken, Entry, Expr, ExprKind, Name, Parameter, StatementKind, TypeName};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements as slips};
-use super::{literal, value};
+use super::{TYPE_WORDS, branches, literal, value};
 use crate::span::Span;
 use pest::iterators::Pairs;
 use smol_str::SmolStr;
@@ -45,9 +45,9 @@ pub(super) fn statement<'t>(builder: &Builder<'t>, pair: Node<'t>) -> Deep<Entry
         Rule::part => part(builder, parts, span),
         Rule::import => import(builder, parts, span),
         Rule::function => function(builder, parts, span),
-        Rule::repetition => repetition(builder, parts, span),
-        Rule::choice => choice(builder, parts, span),
-        Rule::assertion => assertion(builder, parts),
+        Rule::repetition => branches::repetition(builder, parts, span),
+        Rule::choice => branches::choice(builder, parts, span),
+        Rule::assertion => branches::assertion(builder, parts),
         _ => return (unfinished(builder, parts, span), 0),
     };
     builder.checked(builder.plain(kind, span), depth, span)
@@ -81,7 +81,7 @@ fn several_variables<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span
 }
 
 /// The name that a statement gives, with a complaint where it is none.
-fn declared(builder: &Builder, pair: Option<Node>) -> Name {
+pub(super) fn declared(builder: &Builder, pair: Option<Node>) -> Name {
     let name = builder.name(&pair.expect("the grammar puts a name here"));
     if is_reserved(&name.text) {
         builder.report(errors::reserved(&name.text, name.span));
@@ -89,28 +89,39 @@ fn declared(builder: &Builder, pair: Option<Node>) -> Name {
     name
 }
 
-fn invalid(span: Span) -> Expr {
+pub(super) fn invalid(span: Span) -> Expr {
     Expr { kind: ExprKind::Invalid, span }
 }
 
-fn empty(span: Span) -> Body {
+pub(super) fn empty(span: Span) -> Body {
     Body { entries: vec![], span }
 }
 
 // --- Settings, parts and files -----------------------------------------------------------------------------
 
 fn param<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> Deep<StatementKind> {
-    let name = declared(builder, parts.next());
+    let mut name = declared(builder, parts.next());
     let annotation = parts.next().expect("the grammar puts an annotation here");
     let has_colon = annotation.as_str().starts_with(':');
     let inner = annotation.into_inner().next().expect("an annotation holds a type");
     let absent = inner.as_rule() == Rule::type_absent;
     let named = matches!(inner.as_rule(), Rule::type_name | Rule::type_list);
     let of = format!("`{}`", name.text);
-    if !has_colon && named {
-        builder.report(slips::missing_type_colon(&name.text, name.span, builder.trimmed(&inner)));
-    }
-    let ty = type_name(builder, inner, &of, "param");
+    let behind = type_first(&name, inner.as_str(), builder.trimmed(&inner)).filter(|_| !has_colon);
+    let ty = match behind {
+        Some(behind) => {
+            builder.report(slips::type_first(&name, &behind));
+            TypeName::Named(std::mem::replace(&mut name, behind))
+        }
+        // What is wrong with the name was said.
+        None if absent && is_reserved(&name.text) => TypeName::Invalid(builder.behind(&inner)),
+        None => {
+            if !has_colon && named {
+                builder.report(slips::missing_type_colon(&name.text, name.span, builder.trimmed(&inner)));
+            }
+            type_name(builder, inner, &of, "param")
+        }
+    };
     let (mut default, mut range) = (None, None);
     let mut depth = 0;
     let mut in_range = false;
@@ -118,6 +129,14 @@ fn param<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> D
         match part.as_rule() {
             Rule::assign => assigned(builder, &part, "param"),
             Rule::in_word => in_range = true,
+            _ if in_range && default.is_none() && value::at_equals(&part).is_some() => {
+                let Some((ends, sign, given)) = value::at_equals(&part) else { continue };
+                let (ends, given) = (value::part_of(builder, ends), value::part_of(builder, given));
+                let whole = Span { start: ends.0.span.start, ..span };
+                builder.report(slips::range_first(&name.text, builder.span(&sign), whole));
+                depth = depth.max(ends.1).max(given.1);
+                (range, default) = (Some(ends.0), Some(given.0));
+            }
             _ => {
                 let (value, deep) = value::expression(builder, part);
                 depth = depth.max(deep);
@@ -145,8 +164,24 @@ fn assigned(builder: &Builder, sign: &Node, word: &str) {
 
 fn part<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> Deep<StatementKind> {
     let name = declared(builder, parts.next());
-    let (body, depth) = match parts.next() {
-        Some(body) if body.as_rule() == Rule::body => builder.body(body),
+    let mut parts = parts.peekable();
+    let taken = parts.next_if(|part| part.as_rule() == Rule::parameters).map(|pair| {
+        let place = builder.trimmed(&pair);
+        let known = builder.reported();
+        let taken = parameters(builder, pair);
+        // One complaint about them is enough.
+        if builder.reported() == known {
+            builder.report(slips::part_takes(&name.text, place));
+        }
+        taken
+    });
+    let (mut body, depth) = match parts.next() {
+        Some(body) if body.as_rule() == Rule::body => {
+            let declares = builder.declares.replace(true);
+            let body = builder.body(body);
+            builder.declares.set(declares);
+            body
+        }
         Some(sign) => {
             builder.report(slips::part_is_no_value(&name.text, builder.span(&sign)));
             parts.for_each(|value| drop(value::expression(builder, value)));
@@ -157,6 +192,10 @@ fn part<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> De
             (empty(span.after()), 0)
         }
     };
+    for Parameter { name, ty } in taken.into_iter().flatten() {
+        let (span, default) = (name.span, invalid(name.span));
+        body.entries.push(builder.plain(StatementKind::Param { name, ty, default, range: None }, span));
+    }
     (StatementKind::Part { name, body }, depth)
 }
 
@@ -274,6 +313,16 @@ fn parameters(builder: &Builder, pair: Node) -> Vec<Parameter> {
         });
         let mut typed = false;
         for part in inner {
+            let behind = parameter.as_ref().filter(|_| part.as_rule() == Rule::beyond && !typed);
+            if let Some(behind) =
+                behind.and_then(|first| type_first(&first.name, part.as_str(), builder.trimmed(&part)))
+                && let Some(parameter) = &mut parameter
+            {
+                typed = true;
+                builder.report(slips::type_first(&parameter.name, &behind));
+                parameter.ty = TypeName::Named(std::mem::replace(&mut parameter.name, behind));
+                continue;
+            }
             match (&mut parameter, part.as_rule()) {
                 (_, Rule::beyond) => {
                     typed = true;
@@ -296,6 +345,16 @@ fn parameters(builder: &Builder, pair: Node) -> Vec<Parameter> {
         found.extend(parameter);
     }
     found
+}
+
+/// `int count`: the name that stands behind a type in place of before it.
+fn type_first(ty: &Name, behind: &str, place: Span) -> Option<Name> {
+    let word = behind.trim_ascii();
+    let is_name = word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+        && word.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
+    let start = place.end - word.len() as u32;
+    let swapped = is_name && TYPE_WORDS.contains(&ty.text.as_str()) && !TYPE_WORDS.contains(&word);
+    swapped.then(|| Name { text: SmolStr::new(word), span: Span { start, ..place } })
 }
 
 /// A type, of what is said in `of` in the statement that begins with `word`.
@@ -324,158 +383,4 @@ fn type_name(builder: &Builder, pair: Node, of: &str, word: &str) -> TypeName {
             TypeName::Invalid(span)
         }
     }
-}
-
-// --- Repetition and choice ---------------------------------------------------------------------------------
-
-fn repetition<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Span) -> Deep<StatementKind> {
-    let mut parts = parts.peekable();
-    let variable = declared(builder, parts.next());
-    match parts.next_if(|part| part.as_rule() == Rule::binder) {
-        Some(binder) if binder.as_str() == "in" => {}
-        Some(sign) => builder.report(slips::missing_in(sign.as_str(), builder.span(&sign))),
-        None if parts.peek().is_some_and(|head| head.as_str().trim_ascii().is_empty()) => {
-            let place = Span { end: span.start + 3, ..span };
-            builder.report(slips::unfinished("for", place));
-            let list = invalid(variable.span.after());
-            let body = empty(span.after());
-            return (StatementKind::For { variable, list, body }, 1);
-        }
-        None => builder.report(slips::missing_in("", variable.span.after())),
-    }
-    let (list, depth) = value::expression(builder, parts.next().expect("`for` has a head"));
-    let (body, deep) = block(builder, &mut parts, "for", &list, span);
-    (StatementKind::For { variable, list, body }, depth.max(deep) + 1)
-}
-
-/// The body behind a head, with a complaint where it is missing or something stands before it.
-fn block<'t>(
-    builder: &Builder<'t>,
-    parts: &mut std::iter::Peekable<Pairs<'t, Rule>>,
-    word: &str,
-    head: &Expr,
-    span: Span,
-) -> Deep<Body> {
-    let known = !matches!(head.kind, ExprKind::Invalid);
-    if let Some(before) = parts.next_if(|part| part.as_rule() == Rule::before_body) {
-        let text = before.as_str().trim_ascii();
-        if text.len() > 1 && text.starts_with(':') {
-            // The braces that follow are those of something within.
-            drop(parts.next());
-            let start = before.as_span().start();
-            return unbraced(builder, word, builder.at(start, start + 1), span);
-        }
-        if known && is_kind(text) && parts.peek().is_some_and(|body| body.as_rule() == Rule::body) {
-            let start = before.as_span().end() - before.as_str().trim_ascii_start().len();
-            let kind = errors::first_token(text);
-            builder.report(slips::unbraced_thing(word, kind, builder.at(start, start + kind.len())));
-            // The slips in the body of the thing are still worth knowing.
-            parts.next().into_iter().for_each(|body| drop(builder.body(body)));
-            return (empty(span.after()), 0);
-        }
-        if known {
-            builder.unexpected(&before, slips::before_block);
-        }
-    }
-    let colon = builder.after((head.span.range().end).saturating_sub(builder.base())).trim_ascii_start();
-    if parts.peek().is_none() && colon.starts_with(':') && known {
-        let start = builder.base() + builder.text_len() - colon.len();
-        return unbraced(builder, word, Span::new(span.source, start, start + 1), span);
-    }
-    match parts.next_if(|part| part.as_rule() == Rule::body) {
-        Some(body) => builder.body(body),
-        None => {
-            let place = head.span.after();
-            if known {
-                builder.report(slips::missing_block(word, place));
-            }
-            (empty(Span { end: span.end.max(place.start), ..place }.after()), 0)
-        }
-    }
-}
-
-/// Whether a text is that of a kind, and of a name behind it.
-fn is_kind(text: &str) -> bool {
-    let word = |word: &str| {
-        word.starts_with(|c: char| c.is_ascii_alphabetic())
-            && word.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'.'))
-            && !is_reserved(word)
-    };
-    text.split_ascii_whitespace().count() <= 2 && text.split_ascii_whitespace().all(word)
-}
-
-/// A body without braces, as in Python. What belongs to it is not known, nor to its `else`: that is one slip.
-fn unbraced(builder: &Builder, word: &str, colon: Span, span: Span) -> Deep<Body> {
-    if !builder.unbraced.replace(true) {
-        builder.report(errors::unbraced(word, colon));
-    }
-    (empty(span.after()), 0)
-}
-
-/// `head { … } else …`
-fn choice<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Span) -> Deep<StatementKind> {
-    let mut parts = parts.peekable();
-    let (condition, depth) = value::expression(builder, parts.next().expect("`if` has a head"));
-    if let Some(then) = parts.next_if(|part| part.as_rule() == Rule::then_word) {
-        builder.report(slips::then_in_statement(builder.span(&then)));
-        let values = parts.filter(|part| part.as_rule() == Rule::expr);
-        values.for_each(|value| drop(value::expression(builder, value)));
-        let then = empty(span.after());
-        return (StatementKind::If { condition, then, otherwise: None }, depth + 1);
-    }
-    let (then, deep) = block(builder, &mut parts, "if", &condition, span);
-    let otherwise = parts.next().map(|pair| otherwise(builder, pair));
-    let deepest = depth.max(deep).max(otherwise.as_ref().map_or(0, |(_, depth)| *depth));
-    let otherwise = otherwise.map(|(body, _)| body);
-    (StatementKind::If { condition, then, otherwise }, deepest + 1)
-}
-
-/// What follows `else`, or the slip `elif`.
-fn otherwise<'t>(builder: &Builder<'t>, pair: Node<'t>) -> Deep<Body> {
-    let mut parts = pair.into_inner();
-    let word = parts.next().expect("the other choice begins with a word");
-    let place = builder.span(&word);
-    if word.as_rule() == Rule::elif {
-        if !builder.unbraced.get() {
-            builder.report(slips::else_if(word.as_str(), place));
-        }
-        let span = parts.clone().last().map_or(place, |last| place.to(builder.trimmed(&last)));
-        let (kind, depth) = choice(builder, parts, span);
-        return chained(builder, kind, depth, span);
-    }
-    match parts.next() {
-        Some(pair) if pair.as_rule() == Rule::body => builder.body(pair),
-        Some(pair) => {
-            let span = builder.trimmed(&pair);
-            let mut parts = pair.into_inner();
-            parts.next();
-            let (kind, depth) = choice(builder, parts, span);
-            chained(builder, kind, depth, span)
-        }
-        None => {
-            if !builder.unbraced.get() {
-                builder.report(slips::missing_else_block(place));
-            }
-            (empty(place.after()), 0)
-        }
-    }
-}
-
-/// A body of one `if`.
-fn chained(builder: &Builder, kind: StatementKind, depth: usize, span: Span) -> Deep<Body> {
-    let (entry, depth) = builder.checked(builder.plain(kind, span), depth, span);
-    (Body { entries: vec![entry], span }, depth)
-}
-
-fn assertion<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>) -> Deep<StatementKind> {
-    let (condition, depth) = value::expression(builder, parts.next().expect("`assert` has a condition"));
-    let message = parts.next().map(|pair| {
-        let start = pair.as_span().start();
-        if !builder.before(start).ends_with(',') {
-            builder.report(slips::missing_comma(condition.span.after()));
-        }
-        value::expression(builder, pair)
-    });
-    let deepest = depth.max(message.as_ref().map_or(0, |(_, depth)| *depth));
-    (StatementKind::Assert { condition, message: message.map(|(value, _)| value) }, deepest + 1)
 }

@@ -44,6 +44,31 @@ pub(super) fn expression(builder: &Builder, pair: Node) -> Deep<Expr> {
     if pairs.len() == 1 {
         return primary(builder, pairs.next().expect("there is one"));
     }
+    joined(builder, pairs, span)
+}
+
+/// `a = b`, which a value never is: what stands before the sign, the sign, and what stands behind it.
+pub(super) fn at_equals<'t>(pair: &Node<'t>) -> Option<(Vec<Node<'t>>, Node<'t>, Vec<Node<'t>>)> {
+    let mut left: Vec<Node> = pair.clone().into_inner().collect();
+    let at = left.iter().position(|pair| pair.as_rule() == Rule::foreign_equals)?;
+    let right = left.split_off(at + 1);
+    let sign = left.pop()?;
+    (!left.is_empty() && !right.is_empty()).then_some((left, sign, right))
+}
+
+/// The tree of a part of an expression.
+pub(super) fn part_of(builder: &Builder, pairs: Vec<Node>) -> Deep<Expr> {
+    let place = |pairs: &[Node]| match pairs {
+        [first, .., last] => builder.span(first).to(builder.trimmed(last)),
+        [only] => builder.trimmed(only),
+        [] => builder.at(0, 0),
+    };
+    let span = place(&pairs);
+    joined(builder, pairs.into_iter(), span)
+}
+
+/// The tree of values and the operators between them.
+fn joined<'t>(builder: &Builder, pairs: impl Iterator<Item = Node<'t>> + Clone, span: Span) -> Deep<Expr> {
     // The parser calls itself for each operator of a row of prefixes.
     let mut row = 0;
     let mut last = None;
@@ -130,6 +155,18 @@ fn infix(builder: &Builder, left: Deep<Expr>, operator: &Node, right: Deep<Expr>
         builder.report(errors::operator_for_function(sign, function, at, left.span, right.span));
         return invalid(span);
     }
+    if operator.as_str().trim_ascii_end() == "|" {
+        let sides = [&left, &right];
+        let placement = sides.iter().any(|side| is_placement(side));
+        let sign = builder.trimmed(operator);
+        builder.report(errors::bar(sign, placement, sides.iter().any(|side| is_condition(side))));
+        if !placement {
+            return invalid(span);
+        }
+        let kind =
+            ExprKind::Binary { operator: BinaryOp::Pipe, at, left: Box::new(left), right: Box::new(right) };
+        return checked(builder, Expr { kind, span }, 1 + left_depth.max(right_depth), at);
+    }
     let operator = match binary(operator.as_str()).or_else(|| foreign(builder, operator)) {
         Some(operator) => operator,
         None => {
@@ -140,6 +177,32 @@ fn infix(builder: &Builder, left: Deep<Expr>, operator: &Node, right: Deep<Expr>
     };
     let kind = ExprKind::Binary { operator, at, left: Box::new(left), right: Box::new(right) };
     checked(builder, Expr { kind, span }, 1 + left_depth.max(right_depth), at)
+}
+
+/// Whether a value is seen to be a placement.
+fn is_placement(value: &Expr) -> bool {
+    match &value.kind {
+        ExprKind::Call { function, .. } => {
+            function.rest.is_empty()
+                && matches!(function.first.text.as_str(), "scale" | "turn" | "move" | "matrix")
+        }
+        ExprKind::Binary { operator, .. } => *operator == BinaryOp::Pipe,
+        ExprKind::Paren(inner) => is_placement(inner),
+        _ => false,
+    }
+}
+
+/// Whether a value is seen to be true or false.
+fn is_condition(value: &Expr) -> bool {
+    use BinaryOp::*;
+    match &value.kind {
+        ExprKind::Bool(_) | ExprKind::Unary { operator: UnaryOp::Not, .. } => true,
+        ExprKind::Binary { operator, .. } => {
+            matches!(operator, Or | And | Equal | NotEqual | Less | LessEqual | Greater | GreaterEqual)
+        }
+        ExprKind::Paren(inner) => is_condition(inner),
+        _ => false,
+    }
 }
 
 /// The operator that goes by another sign elsewhere.

@@ -11,10 +11,42 @@ pub(in crate::check) fn unknown_type(name: &Name) -> Diagnostic {
     let known: Vec<&str> = TYPES.iter().map(|(name, _)| *name).collect();
     let diagnostic =
         Diagnostic::new(Code::E0101, format!("unknown type `{}`", name.text), name.span).at("not known here");
+    if let Some(here) = familiar_type(&name.text) {
+        return diagnostic.help(format!("it is called `{here}` here")).fix(name.span, here);
+    }
     match closest(&name.text, &known) {
-        Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
+        Some(guess) => guess.ask(diagnostic, name.span, ""),
+        None if matches!(name.text.as_str(), "vec3" | "Vector3" | "float3" | "vec" | "position") => {
+            diagnostic.help("a `point` has three lengths, and a `vector` three numbers")
+        }
         None => diagnostic.help(format!("the types are {}, and lists of them: `[length]`", quoted(&known))),
     }
+}
+
+/// What a type of other languages is called here.
+fn familiar_type(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "string" | "str" | "String" => "text",
+        "float" | "double" | "real" | "decimal" | "f32" | "f64" => "number",
+        "integer" | "Integer" | "uint" | "i32" | "u32" => "int",
+        "boolean" | "Boolean" => "bool",
+        "colour" => "color",
+        "placement" | "transformation" | "matrix" => "transform",
+        "shape" | "object" => "thing",
+        "distance" => "length",
+        _ => return None,
+    })
+}
+
+/// A param with the name of a field that every part has.
+pub(in crate::check) fn param_hides_field(name: &Name) -> Diagnostic {
+    Diagnostic::new(
+        Code::E0103,
+        format!("`{}` is a field of every part and file, and cannot be declared", name.text),
+        name.span,
+    )
+    .at("a field already")
+    .help(format!("choose another name, such as `my_{}`", name.text))
 }
 
 /// A `part`, `param`, `import` or `fn` where none can stand.
@@ -70,7 +102,7 @@ pub(in crate::check) fn unknown_prefix(name: &Name) -> Diagnostic {
     let diagnostic = Diagnostic::new(Code::E0101, format!("unknown prefix `@{}`", name.text), name.span)
         .at("not known here");
     match closest(&name.text, &known) {
-        Some(guess) => diagnostic.help(format!("did you mean `@{guess}`?")).fix(name.span, guess),
+        Some(guess) => guess.ask(diagnostic, name.span, "@"),
         None => diagnostic.help("there are `@off`, `@solo` and `@allow(code, \"why\")`"),
     }
 }
@@ -110,7 +142,7 @@ pub(in crate::check) fn allow_what(name: &Name) -> Diagnostic {
     let diagnostic = Diagnostic::new(Code::E0101, format!("no warning is called `{}`", name.text), name.span)
         .at("not known here");
     match closest(&name.text, &names) {
-        Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
+        Some(guess) => guess.ask(diagnostic, name.span, ""),
         None => diagnostic.help("write its code, such as `W0106`"),
     }
 }
@@ -126,7 +158,7 @@ pub(in crate::check) fn no_such_param(
         Diagnostic::new(Code::E0503, format!("the scene has no param `{}`", name.text), name.span)
             .at("not declared");
     match closest(&name.text, params) {
-        Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")),
+        Some(guess) => diagnostic.help(format!("did you mean `{}`?", guess.name)),
         None if params.is_empty() => {
             let ty = ty.map_or("type".into(), Declared::written);
             let value = if value.len() > 40 { "…" } else { value.trim() };

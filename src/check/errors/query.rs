@@ -7,6 +7,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::schema::Field;
 use crate::span::Span;
 use crate::syntax::ast::Name;
+use crate::units;
 
 pub(in crate::check) fn not_a_value(text: &str, span: Span, ty: &Type) -> Diagnostic {
     let help = match ty {
@@ -30,7 +31,12 @@ pub(in crate::check) fn mixed_list([a, b]: [(Span, &Type); 2]) -> Diagnostic {
         Diagnostic::new(Code::E0201, format!("a list holds one type, these are {first} and {other}"), b.0)
             .at(other)
             .label(a.0, first);
-    with_prototype(diagnostic, [a.1, b.1])
+    match (a.1, b.1) {
+        (Type::Scalar(x), Type::Scalar(y)) if (x.dim() == units::NONE) != (y.dim() == units::NONE) => {
+            diagnostic.help("each item has its unit")
+        }
+        _ => with_prototype(diagnostic, [a.1, b.1]),
+    }
 }
 
 /// Says what makes a thing of the scene and a prototype differ, where these are the two.
@@ -72,9 +78,11 @@ pub(in crate::check) fn index_of_what(span: Span, ty: &Type) -> Diagnostic {
 pub(in crate::check) fn whole_argument(function: Function, span: Span, ty: &Type) -> Diagnostic {
     let code = if matches!(ty, Type::Scalar(_)) { Code::E0206 } else { Code::E0201 };
     let message = format!("`{}` wants a whole number, this is {}", function.name(), ty.describe());
-    Diagnostic::new(code, message, span)
-        .at(ty.describe())
-        .help(format!("call it as `{}`", function.signature()))
+    let help = match code {
+        Code::E0206 => format!("call it as `{}`; `round(…)` makes a whole number", function.signature()),
+        _ => format!("call it as `{}`", function.signature()),
+    };
+    Diagnostic::new(code, message, span).at(ty.describe()).help(help)
 }
 
 pub(in crate::check) fn no_bounds(span: Span, ty: &Type) -> Diagnostic {
@@ -95,9 +103,18 @@ pub(in crate::check) fn unknown_column(member: &Name, names: &[&str]) -> Diagnos
         Diagnostic::new(Code::E0101, format!("the table has no column `{}`", member.text), member.span)
             .at("unknown column");
     match closest(&member.text, names) {
-        Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(member.span, guess),
+        Some(guess) => guess.ask(diagnostic, member.span, ""),
         None => diagnostic.help(format!("its columns are {}", quoted(names))),
     }
+}
+
+/// `low.ball`, where `low` is a prototype.
+pub(in crate::check) fn inside_prototype(prototype: &str, member: &Name, kind: &str) -> Diagnostic {
+    let message = format!("`{}` stands nowhere yet: this `{kind}` is a prototype", member.text);
+    Diagnostic::new(Code::E0305, message, member.span).at("inside what is not drawn").help(format!(
+        "draw it under a name of its own, and ask that: `{prototype} mine {{}}`, then `mine.{}`",
+        member.text
+    ))
 }
 
 pub(in crate::check) fn hidden_inside(member: &Name, ty: &Type) -> Diagnostic {
@@ -112,7 +129,7 @@ pub(in crate::check) fn nothing_called(member: &Name, kind: &str, names: &[Strin
     let message = format!("nothing is called `{}` in `{kind}`", member.text);
     let diagnostic = Diagnostic::new(Code::E0101, message, member.span).at("unknown member");
     match closest(&member.text, &names) {
-        Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(member.span, guess),
+        Some(guess) => guess.ask(diagnostic, member.span, ""),
         None if names.is_empty() => diagnostic,
         None => diagnostic.help(format!("it has {}", quoted(&names))),
     }
@@ -137,7 +154,7 @@ pub(in crate::check) fn not_in_file(name: &Name, what: &str, file: &str, names: 
     let message = format!("`{file}` declares no {what} `{}`", name.text);
     let diagnostic = Diagnostic::new(Code::E0101, message, name.span).at("not known there");
     match closest(&name.text, names) {
-        Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
+        Some(guess) => guess.ask(diagnostic, name.span, ""),
         None if names.is_empty() => diagnostic.help("it declares nothing"),
         None => diagnostic.help(format!("it declares {}", quoted(names))),
     }

@@ -29,7 +29,13 @@ pub(in crate::check) fn mismatch(
             None => diagnostic.help("divide by a unit to make it a plain number: `x / 1m`"),
         },
         Code::E0205 => diagnostic.help(color_help(text, ty)),
-        Code::E0206 => diagnostic.help("whole numbers have no decimal point; `round(…)` makes one"),
+        Code::E0206 if text.contains('.') => {
+            diagnostic.help("whole numbers have no decimal point; `round(…)` makes one")
+        }
+        Code::E0206 if text.contains('/') => {
+            diagnostic.help("a quotient is no whole number, even where nothing is left over; `round(…)` makes one")
+        }
+        Code::E0206 => diagnostic.help("whole numbers are written out, as in `1000`; `round(…)` makes one"),
         Code::E0305 => match field {
             FieldType::Named(kind) => {
                 diagnostic.help(format!("name one that stands by itself: `{kind} NAME {{ … }}`"))
@@ -80,9 +86,25 @@ pub(in crate::check) fn mismatch(
     }
 }
 
+/// A value in a `--set`, where a field is not written as in a scene.
+pub(in crate::check) fn in_setting(mut diagnostic: Diagnostic, name: &str) -> Diagnostic {
+    let field = format!("write `{name}: ");
+    if let Some(value) = diagnostic.help.as_ref().and_then(|help| help.strip_prefix(&field)) {
+        diagnostic.help = Some(format!("write `--set \"{name}={}\"`", value.trim_end_matches('`')));
+    }
+    diagnostic
+}
+
 /// The name of what is wanted stands in quotes.
 pub(in crate::check) fn name_in_quotes(diagnostic: Diagnostic, name: &Name) -> Diagnostic {
     diagnostic.help(format!("a name has no quotes: `{}`", name.text)).fix(name.span, name.text.as_str())
+}
+
+/// Whether a quoted text is the name of a picture's file.
+fn is_picture(text: &str) -> bool {
+    let file = text.trim_matches('"').to_ascii_lowercase();
+    text.len() < 60
+        && [".png", ".jpg", ".jpeg", ".webp", ".hdr", ".exr"].iter().any(|end| file.ends_with(end))
 }
 
 /// Whether a quoted text is the code of a colour.
@@ -125,6 +147,9 @@ fn unit_code(wanted: Dim, found: Element) -> Code {
 /// alone knows the unit, so no edit is offered.
 fn with_unit(diagnostic: Diagnostic, text: &str, unit: Option<String>) -> Diagnostic {
     let Some(unit) = unit else { return diagnostic };
+    if text.ends_with('%') {
+        return diagnostic.help(format!("a ratio has no unit: write `50% * 1{unit}`, or how much it is"));
+    }
     let text = if text.is_empty() || text.len() > 40 || text.contains(['\n', '<']) { "(…)" } else { text };
     let shown = if is_bare(text) { text.to_string() } else { format!("({text})") };
     let help = match unit.as_str() {
@@ -163,6 +188,13 @@ fn color_help(text: &str, ty: &Type) -> String {
         Type::Tuple(..) if text.starts_with('(') && text.ends_with(')') && text.len() < 60 => {
             format!("write `rgb{text}` for a linear colour, `srgb{text}` for one as colour pickers show it")
         }
+        Type::Scalar(element) if element.dim() == units::TEMPERATURE && text.len() < 40 => {
+            format!("write `blackbody({text})` for the colour of what glows so hot")
+        }
+        Type::Text if is_picture(text) => {
+            format!("a picture is laid on by `image({text}, 1m)`, each copy 1m wide")
+        }
+        Type::Texture => "one colour is wanted here, no texture; the picture of a sky is its `image`".into(),
         _ => "write `#d94f30`, `rgb(1, 0.5, 0)` or a name such as `orange`".into(),
     }
 }
@@ -219,6 +251,10 @@ pub(in crate::check) fn no_member(member: &Name, ty: &Type) -> Diagnostic {
         Type::Color | Type::Texture => {
             diagnostic.help("a colour is a value as a whole; `mix(a, b, t)` lies between two")
         }
+        Type::Part(_) => diagnostic.help(format!(
+            "a part is asked where it is drawn: `part_name left {{ … }}`, then `left.{}`",
+            member.text
+        )),
         Type::Scalar(_) => diagnostic.help("it is one value; a triple has `.x`, `.y` and `.z`"),
         _ => diagnostic.help("a triple has `.x`, `.y` and `.z`, and a thing has its fields"),
     }
@@ -243,6 +279,9 @@ pub(in crate::check) fn operands(symbol: &str, at: Span, [a, b]: [(Span, &Type);
         .label(a.0, a.1.describe())
         .label(b.0, b.1.describe());
     match (a.1, b.1) {
+        _ if matches!(symbol, "==" | "!=") => diagnostic.help(
+            "two of one type can be compared: numbers, quantities, triples, colours, texts, and what is true or false",
+        ),
         (Type::Transform, Type::Transform) => {
             diagnostic.help("placements are joined by `|>`, in the order in which they act: `a |> b`")
         }
@@ -377,7 +416,13 @@ pub(in crate::check) fn triple_wanted(
         (Type::Tuple(3, element), Some(dim)) => unit_code(dim, *element),
         _ => Code::E0201,
     };
-    Diagnostic::new(code, format!("`{}` wants {of}, this is {}", function.name(), ty.describe()), span)
-        .at(ty.describe())
-        .help(format!("call it as `{}`", function.signature()))
+    let diagnostic =
+        Diagnostic::new(code, format!("`{}` wants {of}, this is {}", function.name(), ty.describe()), span)
+            .at(ty.describe());
+    match (code, dim) {
+        (Code::E0202 | Code::E0204, Some(dim)) => {
+            diagnostic.help(format!("give it a unit, such as `(0, 1, 0){}`", dim.example_unit()))
+        }
+        _ => diagnostic.help(format!("call it as `{}`", function.signature())),
+    }
 }

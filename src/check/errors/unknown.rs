@@ -57,7 +57,7 @@ pub(in crate::check) fn unknown_camera(name: &Name, cameras: &[&str]) -> Diagnos
     let diagnostic = Diagnostic::new(Code::E0101, format!("no camera is called `{}`", name.text), name.span)
         .at("not known here");
     match closest(&name.text, cameras) {
-        Some(guess) => diagnostic.help(format!("did you mean `{guess}`?")).fix(name.span, guess),
+        Some(guess) => guess.ask(diagnostic, name.span, ""),
         None if cameras.is_empty() => {
             diagnostic.help(format!("give the camera that name: `camera {} {{ … }}`", name.text))
         }

@@ -2,7 +2,7 @@
 
 use super::super::ast::Comment;
 use super::super::errors;
-use super::{Cutter, Gap, Last, is_word};
+use super::{Cutter, Gap, Last, Level, is_word};
 use crate::span::Span;
 
 impl<'t> Cutter<'t> {
@@ -73,6 +73,14 @@ impl<'t> Cutter<'t> {
             self.last = Last::Operand;
             return self.close_above(self.levels.len() - 1, Some(seen));
         }
+        if self.shows_unclosed_body() {
+            self.edits.push((gap.start..gap.end, b' '));
+            let seen = self.word_span();
+            self.last = Last::Operand;
+            self.close_above(self.levels.len() - 1, Some(seen));
+            self.edits.push((gap.end - 1..gap.end, b'\n'));
+            return self.separate(gap, newline);
+        }
         let end = self.end;
         let level = self.level();
         level.spread |= level.at + 1 == end;
@@ -114,7 +122,7 @@ impl<'t> Cutter<'t> {
             Last::Operator | Last::Definer => !self.begins_field() && !self.begins_statement(),
             Last::Operand | Last::Open => match (self.byte(self.at), self.byte(self.at + 1)) {
                 (b'+' | b'*' | b'/' | b'<' | b'>' | b'{', _) => true,
-                (b'|', b'>') | (b'=' | b'!', b'=') => true,
+                (b'|' | b'-', b'>') | (b'=' | b'!', b'=') => true,
                 (b'.', next) => next.is_ascii_alphabetic() || next == b'_',
                 (b'a' | b'o' | b't' | b'e' | b'i', _) => self.goes_on(),
                 _ => false,
@@ -203,6 +211,19 @@ impl<'t> Cutter<'t> {
         let Some(level) = open.filter(|_| chooses) else { return false };
         let line = self.text[..level.at].rsplit('\n').next().unwrap_or("").trim_ascii_start();
         line.starts_with("if ") || line.starts_with("else ") || line.starts_with("} else ")
+    }
+
+    /// Where braces are known not to match, whether the line begins a thing beside the one whose body is still open, and
+    /// not in it: it is indented as far.
+    fn shows_unclosed_body(&self) -> bool {
+        let beside = |level: &&Level| {
+            level.bracket == b'{' && level.indent == self.indent && self.end > level.at + 1 && self.indent > 0
+        };
+        let around = self.levels.len().checked_sub(2).map(|index| &self.levels[index]);
+        self.layout
+            && self.levels.last().as_ref().is_some_and(beside)
+            && around.is_some_and(|around| around.bracket == b'{' && around.indent < self.indent)
+            && self.begins_item()
     }
 
     /// Whether the line begins what can stand in a body and not in the parentheses around it.

@@ -165,6 +165,22 @@ pub(in crate::syntax) fn foreign_operator(sign: &str, here: &'static str, span: 
     diagnostic.fix(span, here)
 }
 
+/// `turn(y: 45deg) | move(0, 1m, 0)`, `a < b | c`
+pub(in crate::syntax) fn bar(span: Span, placement: bool, condition: bool) -> Diagnostic {
+    let diagnostic = unexpected("|", span);
+    match (placement, condition) {
+        (true, _) => {
+            diagnostic.at("`|>` is wanted").help("`|>` passes a placement on: `a |> b`").fix(span, "|>")
+        }
+        (_, true) => {
+            diagnostic.at("`or` is wanted").help("either condition is written `a or b`").fix(span, "or")
+        }
+        _ => diagnostic
+            .at("is no operator")
+            .help("either condition is written `a or b`, and placements are joined by `a |> b`"),
+    }
+}
+
 /// `a % b`, `a ** b`: functions here.
 pub(in crate::syntax) fn operator_for_function(
     sign: &str,
@@ -259,6 +275,14 @@ pub(in crate::syntax) fn directive(word: &str, span: Span) -> Diagnostic {
     let diagnostic = unexpected("#", span).at("there are no directives");
     let known = WORDS.iter().find(|(words, _)| words.contains(&word));
     diagnostic.help(known.map_or("a comment begins with `//`", |(_, way)| *way))
+}
+
+/// `“1m”`: the places of the quotes around values that have none.
+pub(in crate::syntax) fn quoted_values(places: &[Span]) -> Option<Diagnostic> {
+    let diagnostic = Diagnostic::new(Code::E0001, "this value stands in quotes", *places.first()?)
+        .at("a quote of typesetting")
+        .help("a number and a colour have none: `1m`, `#d94f30`");
+    Some(places.iter().fold(diagnostic, |diagnostic, place| diagnostic.fix(*place, "")))
 }
 
 /// Characters that look like those of the language: the first of them, and where they stand for what.

@@ -3,6 +3,7 @@
 use super::unexpected;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::span::Span;
+use crate::syntax::ast::Name;
 
 /// How the statement that begins with a word is written.
 fn form(word: &str) -> &'static str {
@@ -57,6 +58,73 @@ pub(in crate::syntax) fn missing_type_colon(name: &str, span: Span, ty: Span) ->
         .label(ty, "its type")
         .help(format!("write `{name}: type`"))
         .fix(span.after(), ":")
+}
+
+/// `param int count = 5`, `fn f(length x) -> length = x`
+pub(in crate::syntax) fn type_first(ty: &Name, name: &Name) -> Diagnostic {
+    let right = format!("{}: {}", name.text, ty.text);
+    Diagnostic::new(Code::E0005, "a type stands behind its name", ty.span)
+        .at("a type")
+        .label(name.span, "what is declared")
+        .help(format!("write `{right}`"))
+        .fix(ty.span.to(name.span), right)
+}
+
+/// `h: length = 1m` in a part, or in a file.
+pub(in crate::syntax) fn missing_param(name: &Name, ty: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("`param` is missing before `{}`", name.text), name.span)
+        .at("a setting is declared by its word")
+        .help(format!("write `param {}: {ty} = …`", name.text))
+        .fix(name.span.before(), "param ")
+}
+
+/// `radius: length = 1m` in a thing. `edit` is from behind the name to the sign.
+pub(in crate::syntax) fn type_in_field(name: &str, ty: Span, edit: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("the field `{name}` takes no type"), ty)
+        .at("follows from the field")
+        .help(format!("write `{name}: …`; only a `param` and a `fn` name types"))
+        .fix(edit, ":")
+}
+
+/// `param n: int in 1 to 20 = 5`. `whole` is from the range on.
+pub(in crate::syntax) fn range_first(name: &str, sign: Span, whole: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("the default of `{name}` stands behind its range"), sign)
+        .at("belongs before `in`")
+        .label(Span { end: sign.start, ..whole }, "the range")
+        .help("write `param name: type = value in low to high`")
+}
+
+/// `part p(h: length) { … }`
+pub(in crate::syntax) fn part_takes(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("the part `{name}` takes no parameters"), span)
+        .at("is declared inside")
+        .help(format!("what can be set is a `param`: `part {name} {{ param size: length = 10cm … }}`"))
+}
+
+/// `for b in ball { radius: 2m } { … }`
+pub(in crate::syntax) fn changed_in_head(thing: Span, body: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, "a changed prototype in the head of a loop stands in parentheses", body)
+        .at("taken for the body of the loop")
+        .help("write `(ball { … })`")
+        .fix(thing.before(), "(")
+        .fix(thing.after(), ")")
+}
+
+/// `assert(a == b, "message")`. The places are those of the parentheses.
+pub(in crate::syntax) fn assert_parentheses(open: Span, close: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, "`assert` has no parentheses", open)
+        .at("is no call")
+        .help("write `assert condition, \"message\"`")
+        .fix(open, " ")
+        .fix(close, "")
+}
+
+/// `if c then { … }` as a statement.
+pub(in crate::syntax) fn then_before_block(span: Span) -> Diagnostic {
+    unexpected("then", span)
+        .at("`{` follows the condition at once")
+        .help("write `if … { … } else { … }`")
+        .fix(span, "")
 }
 
 /// `param x: int`

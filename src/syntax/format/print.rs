@@ -374,7 +374,8 @@ impl<'t> Printer<'t> {
         out.push(Doc::Text(" "));
         self.body(then, out);
         let Some(otherwise) = otherwise else { return };
-        out.push(Doc::Text(" else "));
+        self.before_else(end(then.span), out);
+        out.push(Doc::Text("else "));
         // A chain: a body that is just another `if`, without braces.
         if let [Entry::Statement(statement)] = otherwise.entries.as_slice()
             && let StatementKind::If { condition, then, otherwise: next } = &statement.kind
@@ -384,6 +385,30 @@ impl<'t> Printer<'t> {
             return self.choice(condition, then, next.as_ref(), out);
         }
         self.body(otherwise, out);
+    }
+
+    /// What stands between a body and its `else`: a space, or the comments there. Behind one that takes its line,
+    /// `else` begins a line of its own.
+    fn before_else(&mut self, mut at: usize, out: &mut Docs<'t>) {
+        let mut rest = self.text[at..].trim_ascii_start();
+        while let Some(comment) = rest.strip_prefix('/') {
+            let length = match comment.starts_with('/') {
+                true => comment.find('\n'),
+                false => comment.find("*/").map(|end| end + 2),
+            };
+            rest = length.map_or("", |length| &comment[length..]).trim_ascii_start();
+        }
+        let word = self.text.len() - rest.len();
+        let mut own_line = false;
+        while let Some((comment, range)) = self.next_before(word) {
+            self.printed += 1;
+            let below = self.newlines(at..range.start) > 0;
+            out.push(if below { Doc::Hard } else { Doc::Text(" ") });
+            out.push(Doc::Comment(comment));
+            at = range.end;
+            own_line = comment.starts_with("//");
+        }
+        out.push(if own_line { Doc::Hard } else { Doc::Text(" ") });
     }
 
     fn ty(&mut self, ty: &'t TypeName, out: &mut Docs<'t>) {

@@ -1,0 +1,207 @@
+//! Repetition, choice and assertions. The grammar takes what there is; here it is said what is missing.
+
+use super::ast::{Body, Expr, ExprKind, StatementKind};
+use super::build::{Builder, Deep, Node, Rule, is_reserved};
+use super::errors::{self, statements as slips};
+use super::statement::{declared, empty, invalid};
+use super::value;
+use crate::span::Span;
+use pest::iterators::Pairs;
+
+pub(super) fn repetition<'t>(
+    builder: &Builder<'t>,
+    parts: Pairs<'t, Rule>,
+    span: Span,
+) -> Deep<StatementKind> {
+    let mut parts = parts.peekable();
+    let variable = declared(builder, parts.next());
+    match parts.next_if(|part| part.as_rule() == Rule::binder) {
+        Some(binder) if binder.as_str() == "in" => {}
+        Some(sign) => builder.report(slips::missing_in(sign.as_str(), builder.span(&sign))),
+        None if parts.peek().is_some_and(|head| head.as_str().trim_ascii().is_empty()) => {
+            let place = Span { end: span.start + 3, ..span };
+            builder.report(slips::unfinished("for", place));
+            let list = invalid(variable.span.after());
+            let body = empty(span.after());
+            return (StatementKind::For { variable, list, body }, 1);
+        }
+        None => builder.report(slips::missing_in("", variable.span.after())),
+    }
+    let (mut list, depth) = value::expression(builder, parts.next().expect("`for` has a head"));
+    let bodies = parts.clone().filter(|part| part.as_rule() == Rule::body);
+    if let (ExprKind::Name(_) | ExprKind::Member { .. }, [changed, _]) =
+        (&list.kind, &bodies.collect::<Vec<_>>()[..])
+    {
+        let thing = list.span.to(builder.span(changed));
+        builder.report(slips::changed_in_head(thing, builder.span(changed)));
+        list = invalid(thing);
+        parts.find(|part| part.as_rule() == Rule::body);
+    }
+    let (body, deep) = block(builder, &mut parts, "for", &list, span);
+    (StatementKind::For { variable, list, body }, depth.max(deep) + 1)
+}
+
+/// The body behind a head, with a complaint where it is missing or something stands before it.
+fn block<'t>(
+    builder: &Builder<'t>,
+    parts: &mut std::iter::Peekable<Pairs<'t, Rule>>,
+    word: &str,
+    head: &Expr,
+    span: Span,
+) -> Deep<Body> {
+    let known = !matches!(head.kind, ExprKind::Invalid);
+    if let Some(before) = parts.next_if(|part| part.as_rule() == Rule::before_body) {
+        let text = before.as_str().trim_ascii();
+        if text.len() > 1 && text.starts_with(':') {
+            // The braces that follow are those of something within.
+            drop(parts.next());
+            let start = before.as_span().start();
+            return unbraced(builder, word, builder.at(start, start + 1), span);
+        }
+        if known && is_kind(text) && parts.peek().is_some_and(|body| body.as_rule() == Rule::body) {
+            let start = before.as_span().end() - before.as_str().trim_ascii_start().len();
+            let kind = errors::first_token(text);
+            builder.report(slips::unbraced_thing(word, kind, builder.at(start, start + kind.len())));
+            // The slips in the body of the thing are still worth knowing.
+            parts.next().into_iter().for_each(|body| drop(builder.body(body)));
+            return (empty(span.after()), 0);
+        }
+        if known {
+            builder.unexpected(&before, slips::before_block);
+        }
+    }
+    let colon = builder.after((head.span.range().end).saturating_sub(builder.base())).trim_ascii_start();
+    if parts.peek().is_none() && colon.starts_with(':') && known {
+        let start = builder.base() + builder.text_len() - colon.len();
+        return unbraced(builder, word, Span::new(span.source, start, start + 1), span);
+    }
+    match parts.next_if(|part| part.as_rule() == Rule::body) {
+        Some(body) => builder.body(body),
+        None => {
+            let place = head.span.after();
+            if known {
+                builder.report(slips::missing_block(word, place));
+            }
+            (empty(Span { end: span.end.max(place.start), ..place }.after()), 0)
+        }
+    }
+}
+
+/// Whether a text is that of a kind, and of a name behind it.
+fn is_kind(text: &str) -> bool {
+    let word = |word: &str| {
+        word.starts_with(|c: char| c.is_ascii_alphabetic())
+            && word.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'.'))
+            && !is_reserved(word)
+    };
+    text.split_ascii_whitespace().count() <= 2 && text.split_ascii_whitespace().all(word)
+}
+
+/// A body without braces, as in Python. What belongs to it is not known, nor to its `else`: that is one slip.
+fn unbraced(builder: &Builder, word: &str, colon: Span, span: Span) -> Deep<Body> {
+    if !builder.unbraced.replace(true) {
+        builder.report(errors::unbraced(word, colon));
+    }
+    (empty(span.after()), 0)
+}
+
+/// `head { … } else …`
+pub(super) fn choice<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Span) -> Deep<StatementKind> {
+    let mut parts = parts.peekable();
+    let (condition, depth) = value::expression(builder, parts.next().expect("`if` has a head"));
+    if let Some(then) = parts.next_if(|part| part.as_rule() == Rule::then_word) {
+        let values: Vec<Node> = parts.filter(|part| part.as_rule() == Rule::expr).collect();
+        let place = builder.span(&then);
+        if values.iter().all(|value| bare_body(value).is_some()) {
+            builder.report(slips::then_before_block(place));
+        } else {
+            builder.report(slips::then_in_statement(place));
+        }
+        let mut bodies = values.into_iter().filter_map(|value| match bare_body(&value) {
+            Some(body) => Some(builder.body(body)),
+            None => {
+                value::expression(builder, value);
+                None
+            }
+        });
+        let (then, deep) = bodies.next().unwrap_or_else(|| (empty(span.after()), 0));
+        let otherwise = bodies.next();
+        let deepest = depth.max(deep).max(otherwise.as_ref().map_or(0, |(_, depth)| *depth));
+        let otherwise = otherwise.map(|(body, _)| body);
+        return (StatementKind::If { condition, then, otherwise }, deepest + 1);
+    }
+    let (then, deep) = block(builder, &mut parts, "if", &condition, span);
+    let otherwise = parts.next().map(|pair| otherwise(builder, pair));
+    let deepest = depth.max(deep).max(otherwise.as_ref().map_or(0, |(_, depth)| *depth));
+    let otherwise = otherwise.map(|(body, _)| body);
+    (StatementKind::If { condition, then, otherwise }, deepest + 1)
+}
+
+/// The body that a value is, without a kind before it.
+fn bare_body<'t>(value: &Node<'t>) -> Option<Node<'t>> {
+    let mut inner = value.clone().into_inner();
+    let first = inner.next().filter(|first| first.as_rule() == Rule::bare_body)?;
+    inner.next().is_none().then(|| first.into_inner().next())?
+}
+
+/// What follows `else`, or the slip `elif`.
+fn otherwise<'t>(builder: &Builder<'t>, pair: Node<'t>) -> Deep<Body> {
+    let mut parts = pair.into_inner();
+    let word = parts.next().expect("the other choice begins with a word");
+    let place = builder.span(&word);
+    if word.as_rule() == Rule::elif {
+        if !builder.unbraced.get() {
+            builder.report(slips::else_if(word.as_str(), place));
+        }
+        let span = parts.clone().last().map_or(place, |last| place.to(builder.trimmed(&last)));
+        let (kind, depth) = choice(builder, parts, span);
+        return chained(builder, kind, depth, span);
+    }
+    match parts.next() {
+        Some(pair) if pair.as_rule() == Rule::body => builder.body(pair),
+        Some(pair) => {
+            let span = builder.trimmed(&pair);
+            let mut parts = pair.into_inner();
+            parts.next();
+            let (kind, depth) = choice(builder, parts, span);
+            chained(builder, kind, depth, span)
+        }
+        None => {
+            if !builder.unbraced.get() {
+                builder.report(slips::missing_else_block(place));
+            }
+            (empty(place.after()), 0)
+        }
+    }
+}
+
+/// A body of one `if`.
+fn chained(builder: &Builder, kind: StatementKind, depth: usize, span: Span) -> Deep<Body> {
+    let (entry, depth) = builder.checked(builder.plain(kind, span), depth, span);
+    (Body { entries: vec![entry], span }, depth)
+}
+
+pub(super) fn assertion<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>) -> Deep<StatementKind> {
+    let (mut condition, depth) = value::expression(builder, parts.next().expect("`assert` has a condition"));
+    let mut inside = None;
+    if let ExprKind::Tuple(values) = &mut condition.kind
+        && matches!(values[..], [_, Expr { kind: ExprKind::Text(_), .. }])
+    {
+        let (open, close) = (condition.span.start, condition.span.end);
+        let (open, close) =
+            (Span { end: open + 1, ..condition.span }, Span { start: close - 1, ..condition.span });
+        builder.report(slips::assert_parentheses(open, close));
+        inside = values.pop();
+        condition = values.remove(0);
+    }
+    let message = parts.next().map(|pair| {
+        let start = pair.as_span().start();
+        if !builder.before(start).ends_with(',') {
+            builder.report(slips::missing_comma(condition.span.after()));
+        }
+        value::expression(builder, pair)
+    });
+    let deepest = depth.max(message.as_ref().map_or(0, |(_, depth)| *depth));
+    let message = message.map(|(value, _)| value).or(inside);
+    (StatementKind::Assert { condition, message }, deepest + 1)
+}
