@@ -187,13 +187,18 @@ impl<'s> Tracer<'s> {
 
     /// The same with the structure of an earlier scene, if that fits: see [`Tracer::keeps_structure`].
     pub fn with(scene: &'s Scene, structure: Option<Structure>) -> Tracer<'s> {
+        Tracer::at_once(scene, structure).with_caustics()
+    }
+
+    /// The same in less time, for a first look: caustics are left to luck until [`Tracer::with_caustics`].
+    pub fn at_once(scene: &'s Scene, structure: Option<Structure>) -> Tracer<'s> {
         let size = size(scene);
         let space = Space::new(scene.camera.position, size);
         let unit = radiance_unit(peak(scene));
         let kept = structure.and_then(|kept| kept.surfaces.kept(&kept.materials, scene, &space));
         let keeps_structure = kept.is_some();
         let surfaces = kept.unwrap_or_else(|| Surfaces::new(scene, &space));
-        let mut tracer = Tracer {
+        Tracer {
             scene,
             materials: Materials::new(scene, &surfaces, unit),
             lights: Lights::new(scene, &surfaces, &space, unit),
@@ -207,9 +212,13 @@ impl<'s> Tracer<'s> {
             sharing: Sharing::Both,
             level: Level::best(),
             keeps_structure,
-        };
-        tracer.caustics = Caustics::new(&tracer);
-        tracer
+        }
+    }
+
+    /// Sends the photons by which caustics are looked for.
+    pub fn with_caustics(mut self) -> Tracer<'s> {
+        self.caustics = Caustics::new(&self);
+        self
     }
 
     /// Whether surfaces are where they were in the scene before, so that its structure could be kept.

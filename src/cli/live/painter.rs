@@ -130,7 +130,7 @@ impl<'a> Painting<'a> {
     }
 
     fn run(mut self) -> Left {
-        let tracer = Tracer::with(self.scene, self.left.structure.take());
+        let tracer = Tracer::at_once(self.scene, self.left.structure.take());
         let canvas = self.left.canvas.take().and_then(|canvas| self.keep(canvas));
         if canvas.is_none() {
             self.remix();
@@ -138,6 +138,12 @@ impl<'a> Painting<'a> {
         let remixed = self.mixing;
         self.say_reason(canvas.is_some(), tracer.keeps_structure(), remixed);
         let prepass = canvas.as_ref().map_or_else(|| tracer.prepass(), |canvas| canvas.prepass);
+        let fresh = canvas.is_none();
+        let Some(canvas) = canvas.or_else(|| self.begin(&tracer, prepass)) else {
+            self.left.structure = Some(tracer.into_structure());
+            return self.left;
+        };
+        let tracer = tracer.with_caustics();
         std::thread::scope(|scope| {
             let (tracer, prepass) = (&tracer, &prepass);
             let Painter { desk, hub, .. } = self.painter;
@@ -146,7 +152,7 @@ impl<'a> Painting<'a> {
                 let _bomb = Bomb;
                 answer_all(desk, hub, tracer, prepass, job);
             });
-            self.paint(tracer, *prepass, canvas);
+            self.paint(tracer, canvas, fresh);
         });
         self.left.structure = Some(tracer.into_structure());
         self.left
@@ -228,12 +234,10 @@ impl<'a> Painting<'a> {
     }
 
     /// Traces until a new job comes.
-    fn paint(&mut self, tracer: &Tracer, prepass: Prepass, canvas: Option<Canvas>) {
+    fn paint(&mut self, tracer: &Tracer, mut canvas: Canvas, fresh: bool) {
         let _bomb = Bomb;
         let painter = self.painter;
         let desk = &painter.desk;
-        let fresh = canvas.is_none();
-        let Some(mut canvas) = canvas.or_else(|| self.begin(tracer, prepass)) else { return };
         let mut written = 0;
         let (mut shown, mut cost) = (Instant::now(), Duration::ZERO);
         if !fresh {

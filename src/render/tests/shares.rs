@@ -36,7 +36,7 @@ fn a_picture_mixed_anew_is_close_to_a_traced_one() {
     *intensity *= 4.0;
     let shares = Tracer::new(&before).shares(&Control::new()).unwrap().unwrap();
     let traced = |scene: &Scene| {
-        let mut film = Film::new(Window::whole(scene.trace.size), crate::math::exp2(40.0));
+        let mut film = Film::new(Window::whole(scene.trace.size), crate::math::exp2(28.0));
         Tracer::new(scene).add_samples(&mut film, 0..256, &Control::new()).unwrap();
         film
     };
