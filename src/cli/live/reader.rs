@@ -18,6 +18,8 @@ use std::time::{Duration, Instant, SystemTime};
 const PATIENCE: Duration = Duration::from_millis(500);
 /// How long a text that lacks its end is waited for where it has no errors.
 const DOUBT: Duration = Duration::from_millis(50);
+/// What has errors behind what looked like half of a text is believed when it has been the same for so long.
+const STILL: Duration = Duration::from_millis(30);
 /// How often it is looked at meanwhile.
 const GLANCE: Duration = Duration::from_millis(5);
 /// A file that was changed so recently may change again without a new time.
@@ -66,6 +68,8 @@ pub struct Reader {
     text: String,
     /// Since when it looks as if somebody were writing.
     doubtful: Option<Instant>,
+    /// The text that was read meanwhile, and since when it has been the same.
+    still: Option<(String, Instant)>,
 }
 
 /// What looking at the files leads to.
@@ -89,6 +93,7 @@ impl Reader {
             known: BTreeMap::new(),
             text: String::new(),
             doubtful: None,
+            still: None,
         }
     }
 
@@ -126,7 +131,7 @@ impl Reader {
         if let Some(wait) = self.doubt(&loaded, &known) {
             return Seen::Later(wait);
         }
-        self.doubtful = None;
+        (self.doubtful, self.still) = (None, None);
         self.known = known;
         if let Ok(loaded) = &loaded {
             self.text.clone_from(&loaded.sources.get(loaded.id).text);
@@ -155,9 +160,25 @@ impl Reader {
         if believed {
             return None;
         }
+        if !emptied && !cut && self.is_still(loaded) {
+            return None;
+        }
         let since = *self.doubtful.get_or_insert_with(Instant::now);
         let patience = if wrong || emptied { PATIENCE } else { DOUBT };
         (since.elapsed() < patience).then_some(GLANCE)
+    }
+
+    /// Whether the text of a scene has been the same for a while.
+    fn is_still(&mut self, loaded: &Result<Loaded, Problem>) -> bool {
+        let Ok(loaded) = loaded else { return false };
+        let text = &loaded.sources.get(loaded.id).text;
+        match &self.still {
+            Some((known, since)) if known == text => since.elapsed() >= STILL,
+            _ => {
+                self.still = Some((text.clone(), Instant::now()));
+                false
+            }
+        }
     }
 
     /// Whether a file holds something else than when it was read.
