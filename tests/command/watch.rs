@@ -36,7 +36,12 @@ impl<'d> Watching<'d> {
     }
 
     fn with(desk: &'d Desk, flags: &'static str) -> Watching<'d> {
-        let mut command = desk.command(&format!("watch scene.rt -o out.exr {flags}"));
+        Watching::watch(desk, flags, "")
+    }
+
+    /// With flags that a build has too, and flags of its own.
+    fn watch(desk: &'d Desk, flags: &'static str, own: &str) -> Watching<'d> {
+        let mut command = desk.command(&format!("watch scene.rt -o out.exr {flags} {own}"));
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
         let (sender, lines) = channel();
         let stderr = BufReader::new(child.stderr.take().unwrap());
@@ -158,6 +163,17 @@ fn links_that_are_swapped_are_followed() {
     watching.until_as_built();
     desk.put("v2/scene.rt", with_size("32cm"));
     watching.until_as_built();
+}
+
+#[test]
+fn files_can_be_looked_at_from_time_to_time() {
+    let desk = desk();
+    let mut watching = Watching::watch(&desk, FLAGS, "--poll=20");
+    watching.until_as_built();
+    for size in ["40cm", "41cm"] {
+        desk.put("scene.rt", with_size(size));
+        watching.until_as_built();
+    }
 }
 
 #[test]

@@ -156,11 +156,8 @@ impl Reader {
             }
         };
         // Whoever emptied it, or wrote half of it, may still be writing what has errors.
-        let believed = !emptied && !cut && (!wrong || self.doubtful.is_none());
-        if believed {
-            return None;
-        }
-        if !emptied && !cut && self.is_still(loaded) {
+        let whole = !emptied && !cut;
+        if whole && (!wrong || self.doubtful.is_none() || self.is_still(loaded)) {
             return None;
         }
         let since = *self.doubtful.get_or_insert_with(Instant::now);

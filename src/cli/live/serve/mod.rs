@@ -92,10 +92,6 @@ pub fn start(hub: Arc<Hub>, wanted: Wanted) -> Result<String, Problem> {
 
 /// Listens where it is asked for, or on the usual port, or on a free one.
 fn listen(address: SocketAddr) -> Result<TcpListener, Problem> {
-    if !address.ip().is_loopback() {
-        let problem = Problem::new(format!("{address} can be reached from other machines"));
-        return Err(problem.help("the page is for this machine alone: `--serve=127.0.0.1:PORT`"));
-    }
     let usual = SocketAddr::from((Ipv4Addr::LOCALHOST, USUAL_PORT));
     let wanted = if address.port() == 0 { TcpListener::bind(usual).ok() } else { None };
     let listener = match wanted {
