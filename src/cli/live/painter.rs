@@ -35,8 +35,10 @@ pub struct Painter {
     pub hub: Arc<Hub>,
     /// Where they are written, if they are.
     pub writer: Option<Writer>,
-    /// What traces.
-    pub threads: Arc<ThreadPool>,
+    /// What traces, behind all else that the machine does.
+    pub threads: ThreadPool,
+    /// What does what somebody waits for.
+    pub front: ThreadPool,
     /// What is said.
     pub terminal: Terminal,
     /// Whether to say only what is wrong.
@@ -101,7 +103,7 @@ impl Painter {
         let mut left = Left::default();
         loop {
             let job = self.desk.take();
-            left = self.threads.install(|| Painting::new(self, &job, left).run());
+            left = Painting::new(self, &job, left).run();
             left.job = Some(job);
         }
     }
@@ -130,32 +132,43 @@ impl<'a> Painting<'a> {
     }
 
     fn run(mut self) -> Left {
-        let tracer = Tracer::at_once(self.scene, self.left.structure.take());
+        let Painter { front, threads, desk, hub, .. } = self.painter;
+        let mut tracer = front.install(|| Tracer::at_once(self.scene, self.left.structure.take()));
         let canvas = self.left.canvas.take().and_then(|canvas| self.keep(canvas));
         if canvas.is_none() {
-            self.remix();
+            front.install(|| self.remix());
         }
         let remixed = self.mixing;
         self.say_reason(canvas.is_some(), tracer.keeps_structure(), remixed);
-        let prepass = canvas.as_ref().map_or_else(|| tracer.prepass(), |canvas| canvas.prepass);
         let fresh = canvas.is_none();
-        let Some(canvas) = canvas.or_else(|| self.begin(&tracer, prepass)) else {
-            self.left.structure = Some(tracer.into_structure());
-            return self.left;
-        };
-        let tracer = tracer.with_caustics();
-        std::thread::scope(|scope| {
-            let (tracer, prepass) = (&tracer, &prepass);
-            let Painter { desk, hub, .. } = self.painter;
-            let job = self.job;
-            scope.spawn(move || {
-                let _bomb = Bomb;
-                answer_all(desk, hub, tracer, prepass, job);
-            });
-            self.paint(tracer, canvas, fresh);
-        });
+        let begun = canvas.or_else(|| front.install(|| self.begin(&tracer)));
+        if let Some(canvas) = begun {
+            if threads.install(|| self.find_caustics(&mut tracer)) {
+                std::thread::scope(|scope| {
+                    let (tracer, prepass, job) = (&tracer, canvas.prepass, self.job);
+                    scope.spawn(move || {
+                        let _bomb = Bomb;
+                        front.install(|| answer_all(desk, hub, tracer, &prepass, job));
+                    });
+                    threads.install(|| self.paint(tracer, canvas, fresh));
+                });
+            } else {
+                self.left.canvas = Some(canvas);
+            }
+        }
         self.left.structure = Some(tracer.into_structure());
         self.left
+    }
+
+    /// Looks where caustics come from. False if a new job comes before that is known.
+    fn find_caustics(&self, tracer: &mut Tracer) -> bool {
+        // It is cancelled too where only another window is to come first.
+        while let Some(control) = self.painter.desk.begin() {
+            if tracer.find_caustics(&control).is_ok() {
+                return true;
+            }
+        }
+        false
     }
 
     /// What stays good of the samples there are.
@@ -274,8 +287,8 @@ impl<'a> Painting<'a> {
     }
 
     /// Takes a first look. None if a new job comes before it is done.
-    fn begin(&mut self, tracer: &Tracer, prepass: Prepass) -> Option<Canvas> {
-        let start = Instant::now();
+    fn begin(&mut self, tracer: &Tracer) -> Option<Canvas> {
+        let (start, prepass) = (Instant::now(), tracer.prepass());
         let look = loop {
             let control = self.painter.desk.begin()?;
             // It is cancelled too where only another window is to come first.

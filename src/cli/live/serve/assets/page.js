@@ -25,7 +25,7 @@ const params = new Params({
   say: toast,
 });
 const inspector = new Inspector({
-  ask: (x, y) => link.ask({ type: "why", x, y }),
+  ask: (x, y, patient) => link.ask({ type: "why", x, y, patient }),
   mark: (pixel) => {
     view.mark = pixel;
     view.draw();
