@@ -205,7 +205,7 @@ impl<'s> Tracer<'s> {
         }
         let keeps_structure = kept.is_some();
         let surfaces = kept.unwrap_or_else(|| Surfaces::new(scene, &space));
-        Tracer {
+        let mut tracer = Tracer {
             scene,
             materials: Materials::new(scene, &surfaces, unit),
             lights: Lights::new(scene, &surfaces, &space, unit),
@@ -220,7 +220,14 @@ impl<'s> Tracer<'s> {
             sharing: Sharing::Both,
             level: Level::best(),
             keeps_structure,
-        }
+        };
+        tracer.aware |= !caustic::may_be(&tracer);
+        tracer
+    }
+
+    /// Whether it is known where caustics come from: see [`Tracer::find_caustics`].
+    pub fn knows_caustics(&self) -> bool {
+        self.aware
     }
 
     /// Sends the photons by which caustics are looked for, unless that was done.

@@ -16,7 +16,7 @@ const TOGETHER: u32 = 16;
 const BAND: u32 = 64;
 /// How long a pixel is taken apart for who wants to know at once, and for who is patient; at least its first
 /// [`TOGETHER`] samples.
-const AT_ONCE: Duration = Duration::from_millis(5);
+const AT_ONCE: Duration = Duration::from_millis(2);
 const PATIENCE: Duration = Duration::from_millis(200);
 
 /// Answers questions about a job until there is a new one.

@@ -99,8 +99,8 @@ pub fn run(arguments: &Watch, terminal: Terminal, interrupt: &Interrupt) -> Resu
 fn step_back() {
     #[cfg(target_os = "linux")]
     {
-        /// The greatest, which needs no privilege.
-        const NICENESS: i32 = 19;
+        /// About a tenth of the share of others.
+        const NICENESS: i32 = 10;
         // Where it is refused all is slower, and works. For Linux a process is a thread.
         let _ = rustix::process::setpriority_process(None, NICENESS);
     }

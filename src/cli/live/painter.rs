@@ -24,6 +24,8 @@ use std::time::{Duration, Instant};
 
 /// A first look takes one pixel of so many across and down.
 const LOOK: u32 = 8;
+/// Pictures of up to so many pixels are seen whole sooner than it is known where caustics come from.
+const SOON: u64 = 1 << 18;
 /// Between two pictures that are shown so many times as long is traced as it takes to show one.
 const SHARE: u32 = 10;
 
@@ -79,13 +81,21 @@ struct Mix {
 /// A picture that was mixed anew is shown until the traced one has so many samples a pixel.
 const ENOUGH: u32 = 16;
 
+/// A picture of one pixel in so many, to look at until there is a better one.
+#[derive(Default)]
+struct Look {
+    step: u32,
+    /// As [`Frame::pixels`] has them.
+    pixels: Vec<[f32; 5]>,
+}
+
 /// Samples that were taken of a scene.
 struct Canvas {
     film: Film,
     prepass: Prepass,
     work: Work,
     /// What pixels show that have no sample.
-    look: Vec<[f32; 5]>,
+    look: Look,
     /// How long tracing took.
     time: Duration,
     /// The noise when all pixels had a power of two of samples last.
@@ -289,11 +299,29 @@ impl<'a> Painting<'a> {
     /// Takes a first look. None if a new job comes before it is done.
     fn begin(&mut self, tracer: &Tracer) -> Option<Canvas> {
         let (start, prepass) = (Instant::now(), tracer.prepass());
-        let look = loop {
+        let size = self.scene.trace.size;
+        let mut look = Look::default();
+        let soon = !tracer.knows_caustics() && size.map(u64::from).iter().product::<u64>() <= SOON;
+        for step in if soon { &[LOOK, 1][..] } else { &[LOOK] } {
+            look = self.look(tracer, *step)?;
+            if !self.mixing {
+                let shown = self.shown(&prepass);
+                let frame = self.frame(look.pixels.clone(), *step, [0, 1], shown, false);
+                self.painter.hub.show(frame);
+            }
+        }
+        let film = Film::new(Window::whole(size), prepass.scale);
+        let (work, time) = (Work::new(size), start.elapsed());
+        Some(Canvas { film, prepass, work, look, time, noise: None, aim: self.first_aim(), done: false })
+    }
+
+    /// Looks at one pixel of so many across and down. None if a new job comes before it is done.
+    fn look(&self, tracer: &Tracer, step: u32) -> Option<Look> {
+        let seen = loop {
             let control = self.painter.desk.begin()?;
             // It is cancelled too where only another window is to come first.
-            if let Ok(look) = tracer.look(LOOK, &control) {
-                break look;
+            if let Ok(seen) = tracer.look(step, &control) {
+                break seen;
             }
         };
         let pixel = |seen: Option<Rgb>| match seen {
@@ -303,16 +331,7 @@ impl<'a> Painting<'a> {
             }
             None => [0.0, 0.0, 0.0, f32::INFINITY, 0.0],
         };
-        let look: Vec<[f32; 5]> = look.into_iter().map(pixel).collect();
-        if !self.mixing {
-            let shown = self.shown(&prepass);
-            let frame = self.frame(look.clone(), LOOK, [0, 1], shown, false);
-            self.painter.hub.show(frame);
-        }
-        let size = self.scene.trace.size;
-        let film = Film::new(Window::whole(size), prepass.scale);
-        let (work, time) = (Work::new(size), start.elapsed());
-        Some(Canvas { film, prepass, work, look, time, noise: None, aim: self.first_aim(), done: false })
+        Some(Look { step, pixels: seen.into_par_iter().map(pixel).collect() })
     }
 
     fn step(&self, tracer: &Tracer, canvas: &mut Canvas, step: &Step, control: &Control) -> bool {
@@ -457,10 +476,10 @@ impl<'a> Painting<'a> {
 /// What pixels show: their means, or where there are no samples the first look.
 fn pixels(canvas: &Canvas, [width, height]: [u32; 2]) -> Vec<[f32; 5]> {
     let Canvas { film, look, .. } = canvas;
-    let columns = width.div_ceil(LOOK);
+    let columns = width.div_ceil(look.step);
     let row = |y: u32| (0..width).map(move |x| (x, y));
     let pixel = |(x, y): (u32, u32)| match film.samples(x, y) {
-        0 => look[(y / LOOK * columns + x / LOOK) as usize],
+        0 => look.pixels[(y / look.step * columns + x / look.step) as usize],
         _ => {
             let [r, g, b] = film.mean(x, y).to_array().map(|v| (v as f32).clamp(f32::MIN, f32::MAX));
             [r, g, b, film.error(x, y) as f32, film.alpha(x, y) as f32]

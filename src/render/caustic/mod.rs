@@ -29,10 +29,10 @@ mod search;
 mod seeds;
 pub mod walk;
 
-use super::{Cancelled, Control, Tracer};
 use super::lanes::One;
 use super::light::{Lights, Receivers};
 use super::vector::V;
+use super::{Cancelled, Control, Tracer};
 use chain::Ways;
 use goal::Goal;
 use search::Search;
@@ -48,6 +48,11 @@ pub struct Caustics {
     seeds: Option<Seeds>,
     /// For lamps without size.
     search: Option<Search>,
+}
+
+/// Whether a scene may have any: it takes polished surfaces.
+pub fn may_be(tracer: &Tracer) -> bool {
+    tracer.scene.trace.indirect && !photons::casters(tracer).is_empty()
 }
 
 impl Caustics {

@@ -47,10 +47,10 @@ function watchPaints() {
 const clock = () => performance.timeOrigin + performance.now();
 
 /// Waits for the first paint of a kind, and gives its time.
-const paint = (page, kind, { after = 0, step = 8, pixel } = {}) =>
+const paint = (page, kind, { after = 0, step = 8, pixel = null } = {}) =>
   until(`${kind} is painted`, () => page.evaluate(
     ([kind, after, step, pixel]) =>
-      window.paints.find((paint) => paint.kind === kind && !(paint.generation <= after) && !(paint.step > step) && paint.pixel === pixel)?.at,
+      window.paints.find((paint) => paint.kind === kind && !(paint.generation <= after) && !(paint.step > step) && (paint.pixel ?? null) === pixel)?.at,
     [kind, after, step, pixel],
   ));
 

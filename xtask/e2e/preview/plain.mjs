@@ -10,11 +10,14 @@ import { CHROMIUM, FLAGS, until } from "./setting.mjs";
 /// Opens a page, and waits until it shows a picture with every pixel.
 export async function open(url, { width, height } = { width: 1280, height: 760 }) {
   const profile = mkdtempSync(join(tmpdir(), "rtc-page-"));
-  const flags = [...FLAGS, "--headless=new", "--remote-debugging-pipe", `--user-data-dir=${profile}`, `--window-size=${width},${height}`, "about:blank"];
+  const flags = [...FLAGS, "--headless=new", "--remote-debugging-pipe", `--user-data-dir=${profile}`, `--window-size=${width},${height}`, url];
   const child = spawn(CHROMIUM, flags, { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
   const ended = new Promise((resolve) => child.on("exit", resolve));
   const call = talk(child.stdio[3], child.stdio[4]);
-  const { targetId } = await call("Target.createTarget", { url, width, height });
+  const { targetId } = await until("there is a page", async () => {
+    const { targetInfos } = await call("Target.getTargets", {});
+    return targetInfos.find((target) => target.type === "page");
+  });
   const { sessionId } = await call("Target.attachToTarget", { targetId, flatten: true });
   const evaluate = async (work, argument) => {
     const expression = `(${work})(${JSON.stringify(argument) ?? ""})`;
@@ -24,7 +27,9 @@ export async function open(url, { width, height } = { width: 1280, height: 760 }
   };
   const mouse = (type, x, y) => call("Input.dispatchMouseEvent", { type, x, y, button: "left", clickCount: 1 }, sessionId);
   const key = (type, name) => call("Input.dispatchKeyEvent", { type, key: name, code: name }, sessionId);
-  await until("the page shows a picture", () => evaluate(() => document.getElementById("stage")?.dataset.step === "1"));
+  // Before it is loaded there is nothing to ask.
+  const there = () => evaluate(() => document.getElementById("stage")?.dataset.step === "1").catch(() => false);
+  await until("the page shows a picture", there);
   return {
     evaluate,
     async click(x, y) {
