@@ -347,6 +347,10 @@ impl<'s> Tracer<'s> {
             let traced: Vec<Vec<Pixel>> = tiles
                 .par_iter()
                 .map(|tile| {
+                    // A tile asks only after its first pixel, and there may be thousands.
+                    if control.is_cancelled() {
+                        return Vec::new();
+                    }
                     let mut jobs = Tile::new(*tile, pass.clone(), scale, self.unit, control);
                     self.trace(&view, &mut jobs);
                     jobs.pixels
