@@ -21,4 +21,5 @@ mod oracle;
 mod parse;
 mod pictures;
 mod scenes;
+mod trust;
 mod why;
