@@ -98,12 +98,12 @@ fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
         }
     };
     let all: Vec<Target> = jobs.iter().flat_map(|job| job.targets.clone()).collect();
-    let paths: Vec<PathBuf> = all.iter().map(|target| target.path.clone()).collect();
+    let paths = paths(&all);
     if let Some(twice) = first_repeated(&paths) {
         let problem = Problem::new(format!("two pictures would go to `{}`", twice.display()));
         return Err(problem.help("give one of the scenes another name, or build them one by one with `-o`"));
     }
-    refuse_inputs_as_outputs(scenes, &all)?;
+    refuse_inputs_as_outputs(scenes, &paths)?;
     refuse_idle_depth(arguments.taking.look.bits, &all)?;
     for job in &jobs {
         refuse_idle_aovs(&arguments.aov, &job.targets)?;
@@ -119,22 +119,25 @@ fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
 pub fn targets(outputs: &[PathBuf]) -> Result<Vec<Target>, Problem> {
     let targets: Vec<Target> =
         outputs.iter().map(|path| Target::from_argument(path)).collect::<Result<_, _>>()?;
-    let paths: Vec<PathBuf> = targets.iter().map(|target| target.path.clone()).collect();
-    match first_repeated(&paths) {
+    match first_repeated(&paths(&targets)) {
         Some(twice) => Err(Problem::new(format!("the output `{}` is given twice", twice.display()))),
         None => Ok(targets),
     }
 }
 
-/// Nobody means to replace a scene by its picture.
-pub fn refuse_inputs_as_outputs(inputs: &[PathBuf], targets: &[Target]) -> Result<(), Problem> {
+/// The files that targets are.
+pub fn paths(targets: &[Target]) -> Vec<PathBuf> {
+    targets.iter().map(|target| target.path.clone()).collect()
+}
+
+/// Nobody means to replace a scene, or what it is made of, by its picture.
+pub fn refuse_inputs_as_outputs(inputs: &[PathBuf], outputs: &[PathBuf]) -> Result<(), Problem> {
     // Folders are refused when they are read.
     let files = inputs.iter().filter(|path| !is_standard(path) && !path.is_dir());
     let inputs: Vec<PathBuf> = files.map(|path| same(path)).collect();
-    match targets.iter().find(|target| !is_standard(&target.path) && inputs.contains(&same(&target.path))) {
-        Some(target) => {
-            let problem =
-                Problem::new(format!("`{}` would be replaced by its picture", target.path.display()));
+    match outputs.iter().find(|output| !is_standard(output) && inputs.contains(&same(output))) {
+        Some(output) => {
+            let problem = Problem::new(format!("`{}` would be replaced by the picture", output.display()));
             Err(problem.help("name another output with `-o`"))
         }
         None => Ok(()),
@@ -181,6 +184,7 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
     let Context { arguments, terminal, .. } = *context;
     let start = Instant::now();
     let loaded = scenes::load(&job.scene, &arguments.reading, &arguments.taking.overrides())?;
+    refuse_inputs_as_outputs(&loaded.read(), &paths(&job.targets))?;
     let compiled = &loaded.compiled;
     let mut exit = messenger.say(&compiled.diagnostics, &loaded.sources)?;
     let Some(scene) = compiled.scene.as_ref().filter(|_| exit == Exit::Done) else {

@@ -13,7 +13,7 @@ const LARGEST: u64 = MOST_PIXELS * 16;
 /// Develops one picture into all its outputs.
 pub fn run(arguments: &Develop, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
     let targets = build::targets(&arguments.outputs)?;
-    build::refuse_inputs_as_outputs(std::slice::from_ref(&arguments.input), &targets)?;
+    build::refuse_inputs_as_outputs(std::slice::from_ref(&arguments.input), &build::paths(&targets))?;
     build::refuse_idle_depth(arguments.look.bits, &targets)?;
     let bytes = input::read_bytes(&arguments.input, LARGEST)?;
     let (picture, mut facts) = decode_exr(&bytes).map_err(|reason| {

@@ -9,7 +9,7 @@ use rt_lang::lower::Overrides;
 use rt_lang::source::Sources;
 use rt_lang::span::SourceId;
 use rt_lang::{Compiled, compile};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A scene that was compiled, or refused.
 pub struct Loaded {
@@ -21,6 +21,13 @@ pub struct Loaded {
     pub files: Disk,
     /// What the compiler made of it.
     pub compiled: Compiled,
+}
+
+impl Loaded {
+    /// The files that were read beside the scene.
+    pub fn read(&self) -> Vec<PathBuf> {
+        self.files.held().into_iter().filter_map(|(path, bytes)| bytes.map(|_| path)).collect()
+    }
 }
 
 /// Reads and compiles a scene.

@@ -34,7 +34,7 @@ mod work;
 mod writer;
 
 use super::args::Watch;
-use super::build::{refuse_idle_depth, refuse_inputs_as_outputs, targets};
+use super::build::{paths, refuse_idle_depth, refuse_inputs_as_outputs, targets};
 use super::input::is_standard;
 use super::interrupt::Interrupt;
 use super::target::{Target, print};
@@ -48,7 +48,6 @@ use painter::Painter;
 use rayon::ThreadPoolBuilder;
 use reader::Reader;
 use serve::Wanted;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 use watcher::Watcher;
@@ -68,7 +67,7 @@ pub fn run(arguments: &Watch, terminal: Terminal, interrupt: &Interrupt) -> Resu
         targets => format!("{}: ", build::names(targets)),
     };
     let depth = arguments.taking.look.bits;
-    let own: Vec<PathBuf> = targets.iter().map(|target| target.path.clone()).collect();
+    let outputs = paths(&targets);
     let writer = match targets.is_empty() {
         true => None,
         false => Some(Writer::start(targets, depth, interrupt.clone(), terminal)?),
@@ -91,7 +90,7 @@ pub fn run(arguments: &Watch, terminal: Terminal, interrupt: &Interrupt) -> Resu
     }
     let told = hub.clone();
     let watcher = Watcher::new(arguments.poll.map(Duration::from_millis), move || told.ask(Request::Look))?;
-    let reader = Reader::new(&arguments.scene, &arguments.reading, arguments.taking.overrides(), &own);
+    let reader = Reader::new(&arguments.scene, &arguments.reading, arguments.taking.overrides(), outputs);
     Engine::new(arguments, reader, watcher, desk, hub, interrupt.clone(), terminal).run(&requests)
 }
 
@@ -139,7 +138,7 @@ fn outputs(arguments: &Watch) -> Result<Vec<Target>, Problem> {
     if targets.iter().any(|target| is_standard(&target.path)) {
         return Err(Problem::new("a picture that changes cannot go to standard output"));
     }
-    refuse_inputs_as_outputs(std::slice::from_ref(&arguments.scene), &targets)?;
+    refuse_inputs_as_outputs(std::slice::from_ref(&arguments.scene), &paths(&targets))?;
     refuse_idle_depth(arguments.taking.look.bits, &targets)?;
     Ok(targets)
 }

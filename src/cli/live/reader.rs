@@ -2,15 +2,19 @@
 //!
 //! Editors write in many ways: in place, emptying the file first, aside and then renamed, the old one moved away before. What
 //! is read in between is half of a text, or none. A scene is compiled when what it reads has come to hold something else
-//! than it did; and what looks like half of a text is read again for a while before it is believed.
+//! than it did; and what looks like half of a file is kept back for a while before it is believed: an empty or missing
+//! file, a picture that breaks off, a text that ends in the middle of something or is a beginning of the one before. Any other
+//! error is believed at once.
 
 use crate::cli::Problem;
 use crate::cli::args::Reading;
+use crate::cli::build::refuse_inputs_as_outputs;
 use crate::cli::input;
 use crate::cli::scene::{self, Loaded};
-use rt_lang::diagnostic::{Code, any_errors};
+use rt_lang::diagnostic::{Code, Severity, any_errors};
 use rt_lang::lower::Overrides;
-use std::collections::{BTreeMap, BTreeSet};
+use rt_lang::span::Span;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
@@ -18,7 +22,7 @@ use std::time::{Duration, Instant, SystemTime};
 const PATIENCE: Duration = Duration::from_millis(500);
 /// How long a text that lacks its end is waited for where it has no errors.
 const DOUBT: Duration = Duration::from_millis(50);
-/// What has errors behind what looked like half of a text is believed when it has been the same for so long.
+/// What has errors behind what looked like half of a file is believed when it has been the same for so long.
 const STILL: Duration = Duration::from_millis(30);
 /// How often it is looked at meanwhile.
 const GLANCE: Duration = Duration::from_millis(5);
@@ -61,15 +65,22 @@ pub struct Reader {
     scene: PathBuf,
     reading: Reading,
     overrides: Overrides,
-    /// What is written by the one who reads: never a reason to read.
-    own: BTreeSet<PathBuf>,
+    /// Where the picture goes: no file that the scene may be made of.
+    outputs: Vec<PathBuf>,
     known: BTreeMap<PathBuf, Known>,
-    /// The text that was read last.
-    text: String,
+    /// The texts that were read last, by the names of their files.
+    texts: BTreeMap<String, String>,
     /// Since when it looks as if somebody were writing.
     doubtful: Option<Instant>,
-    /// The text that was read meanwhile, and since when it has been the same.
-    still: Option<(String, Instant)>,
+    /// What was read meanwhile.
+    pending: Option<Read>,
+}
+
+/// A scene that was read, and may be half written.
+struct Read {
+    loaded: Result<Loaded, Problem>,
+    known: BTreeMap<PathBuf, Known>,
+    at: Instant,
 }
 
 /// What looking at the files leads to.
@@ -84,16 +95,16 @@ pub enum Seen {
 
 impl Reader {
     /// For a scene; nothing is read yet.
-    pub fn new(scene: &Path, reading: &Reading, overrides: Overrides, own: &[PathBuf]) -> Reader {
+    pub fn new(scene: &Path, reading: &Reading, overrides: Overrides, outputs: Vec<PathBuf>) -> Reader {
         Reader {
             scene: scene.into(),
             reading: reading.clone(),
             overrides,
-            own: own.iter().filter_map(|path| std::path::absolute(path).ok()).collect(),
+            outputs,
             known: BTreeMap::new(),
-            text: String::new(),
+            texts: BTreeMap::new(),
             doubtful: None,
-            still: None,
+            pending: None,
         }
     }
 
@@ -119,8 +130,15 @@ impl Reader {
     /// Looks whether something has changed, and if so reads and compiles. `set` stands beside the settings of the command
     /// line, in whose place it comes; `anyway` compiles also what is the same; `reads` is called before anything is read.
     pub fn look(&mut self, set: &BTreeMap<String, String>, anyway: bool, reads: impl FnOnce()) -> Seen {
-        if !anyway && self.doubtful.is_none() && !self.known.is_empty() && !self.has_changed() {
-            return Seen::Same;
+        let changed = match &mut self.pending {
+            Some(pending) => has_changed(&mut pending.known),
+            None => self.known.is_empty() || has_changed(&mut self.known),
+        };
+        if !anyway && !changed {
+            return match self.pending.take() {
+                Some(pending) => self.judge(pending),
+                None => Seen::Same,
+            };
         }
         reads();
         let reading = Reading { set: settings(&self.reading.set, set), ..self.reading.clone() };
@@ -128,36 +146,39 @@ impl Reader {
         let looks = self.files().map(|path| (absolute(&path), look(&path))).collect();
         let loaded = scene::load(&self.scene, &reading, &self.overrides);
         let known = self.read_by(&loaded, &looks);
-        if let Some(wait) = self.doubt(&loaded, &known) {
+        self.judge(Read { loaded, known, at: Instant::now() })
+    }
+
+    /// Believes what was read, or keeps it back.
+    fn judge(&mut self, read: Read) -> Seen {
+        if let Some(wait) = self.doubt(&read) {
+            self.pending = Some(read);
             return Seen::Later(wait);
         }
-        (self.doubtful, self.still) = (None, None);
-        self.known = known;
+        let Read { loaded, known, .. } = read;
+        (self.doubtful, self.pending, self.known) = (None, None, known);
+        let loaded = loaded.and_then(|loaded| {
+            refuse_inputs_as_outputs(&loaded.read(), &self.outputs)?;
+            Ok(loaded)
+        });
         if let Ok(loaded) = &loaded {
-            self.text.clone_from(&loaded.sources.get(loaded.id).text);
+            let texts = loaded.sources.iter().map(|(_, source)| (source.name.clone(), source.text.clone()));
+            self.texts = texts.collect();
         }
         Seen::New(Box::new(loaded))
     }
 
     /// How long to wait before what was read is believed, if it looks as if somebody were in the middle of writing it.
-    fn doubt(
-        &mut self,
-        loaded: &Result<Loaded, Problem>,
-        known: &BTreeMap<PathBuf, Known>,
-    ) -> Option<Duration> {
+    fn doubt(&mut self, read: &Read) -> Option<Duration> {
         let had = |path: &PathBuf| self.known.get(path).is_some_and(|before| before.length > 0);
-        let emptied = known.iter().any(|(path, now)| now.length == 0 && had(path));
-        let (wrong, cut) = match loaded {
+        let emptied = read.known.iter().any(|(path, now)| now.length == 0 && had(path));
+        let (wrong, half) = match &read.loaded {
             Err(_) => (true, had(&absolute(&self.scene))),
-            Ok(loaded) => {
-                let text = &loaded.sources.get(loaded.id).text;
-                let cut = text.len() < self.text.len() && self.text.starts_with(text.as_str());
-                (any_errors(&loaded.compiled.diagnostics), cut)
-            }
+            Ok(loaded) => (any_errors(&loaded.compiled.diagnostics), self.is_half(loaded)),
         };
         // Whoever emptied it, or wrote half of it, may still be writing what has errors.
-        let whole = !emptied && !cut;
-        if whole && (!wrong || self.doubtful.is_none() || self.is_still(loaded)) {
+        let still = self.doubtful.is_none() || read.at.elapsed() >= STILL;
+        if !emptied && !half && (!wrong || still) {
             return None;
         }
         let since = *self.doubtful.get_or_insert_with(Instant::now);
@@ -165,37 +186,25 @@ impl Reader {
         (since.elapsed() < patience).then_some(GLANCE)
     }
 
-    /// Whether the text of a scene has been the same for a while.
-    fn is_still(&mut self, loaded: &Result<Loaded, Problem>) -> bool {
-        let Ok(loaded) = loaded else { return false };
-        let text = &loaded.sources.get(loaded.id).text;
-        match &self.still {
-            Some((known, since)) if known == text => since.elapsed() >= STILL,
-            _ => {
-                self.still = Some((text.clone(), Instant::now()));
-                false
-            }
-        }
-    }
-
-    /// Whether a file holds something else than when it was read.
-    fn has_changed(&mut self) -> bool {
-        let Reader { known, own, .. } = self;
-        known.iter_mut().filter(|(path, _)| !own.contains(*path)).any(|(path, known)| {
-            let look = look(path);
-            let same = match (&look, &known.look) {
-                (Some(now), Some(before)) => now.tells_same(before),
-                (None, None) => known.hash.is_none(),
-                _ => false,
-            };
-            if same {
-                return false;
-            }
-            known.look = look;
-            // Of another length it need not be read.
-            let length = look.map_or(0, |look| look.length as usize);
-            length != known.length || hashed(path) != known.hash
-        })
+    /// Whether some file of a scene looks like the beginning of what it is to be.
+    fn is_half(&self, loaded: &Loaded) -> bool {
+        let sources = &loaded.sources;
+        let begins = |name: &str, text: &str| {
+            let before = self.texts.get(name);
+            before.is_some_and(|before| text.len() < before.len() && before.starts_with(text))
+        };
+        let cut = sources.iter().any(|(_, source)| begins(&source.name, &source.text));
+        let errors = loaded.compiled.diagnostics.iter().filter(|found| found.severity() == Severity::Error);
+        // Of a scene that never was there nobody waits for the end.
+        let breaks_off = |span: Span| {
+            let text = &sources.get(span.source).text;
+            span.end as usize >= text.trim_end().len()
+        };
+        let mut unfinished = errors.map(|found| match found.code {
+            Code::E0002 | Code::E0501 => true,
+            _ => breaks_off(found.primary.span),
+        });
+        cut || !self.texts.is_empty() && unfinished.any(|unfinished| unfinished)
     }
 
     /// What a scene has read.
@@ -233,6 +242,25 @@ impl Reader {
         known.insert(scene, Known { look, hash, length });
         known
     }
+}
+
+/// Whether a file holds something else than when it was read.
+fn has_changed(known: &mut BTreeMap<PathBuf, Known>) -> bool {
+    known.iter_mut().any(|(path, known)| {
+        let look = look(path);
+        let same = match (&look, &known.look) {
+            (Some(now), Some(before)) => now.tells_same(before),
+            (None, None) => known.hash.is_none(),
+            _ => false,
+        };
+        if same {
+            return false;
+        }
+        known.look = look;
+        // Of another length it need not be read.
+        let length = look.map_or(0, |look| look.length as usize);
+        length != known.length || hashed(path) != known.hash
+    })
 }
 
 /// Settings of the command line, but for those of the same name.
