@@ -32,6 +32,7 @@
 //! | [`inventory`] | what stands in a picture, counted | how it is shown |
 //! | [`mend`] | applying the edits that diagnostics offer | files |
 //! | [`report`] | diagnostics to text, for a person or a program | what they are about |
+//! | [`ide`] | what an editor asks of a text | protocols |
 //! | [`why`] | what a pixel shows and where its light comes from, by places in the source | how it is shown |
 
 pub mod asset;
@@ -47,6 +48,7 @@ pub mod expand;
 pub mod explain;
 pub mod export;
 pub mod files;
+pub mod ide;
 pub mod import;
 pub mod inventory;
 pub mod lint;
@@ -68,12 +70,13 @@ use check::Setting;
 use diagnostic::{Code, Diagnostic};
 use eval::{Limits, Origins, Thing, Things};
 use files::{Contents, Files};
+use ide::{Analysis, Stop};
 use import::Imported;
 use inventory::Inventory;
 use lower::{Marks, Meshes, Overrides, Places};
 use render::feedback::Feedback;
 use scene::Scene;
-use source::Sources;
+use source::{Source, Sources};
 use span::{SourceId, Span};
 use why::Provenance;
 
@@ -129,6 +132,16 @@ pub fn compile(files: &dyn Files, sources: &mut Sources, main: SourceId, options
         let thread = thread.expect("the system gives a process one more thread");
         thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })
+}
+
+/// Finds out what a source means, for the questions of an editor: [`compile`] with the trees and names kept. None where
+/// `stop` ended it.
+pub fn analyse(files: &dyn Files, main: Source, options: &Options, stop: Stop) -> Option<Analysis> {
+    let mut sources = Sources::default();
+    let main = sources.add(main);
+    let compiled = compile(files, &mut sources, main, options);
+    let Compiled { diagnostics, notes, .. } = compiled;
+    (!stop()).then_some(Analysis { sources, main, diagnostics, notes })
 }
 
 fn stages(

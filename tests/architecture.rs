@@ -43,6 +43,26 @@ const EDGES: &[(&str, &[&str])] = &[
     ("change", &["span", "color", "scene", "syntax"]),
     ("inventory", &["source", "schema", "check", "eval", "scene"]),
     ("mend", &["span", "diagnostic"]),
+    // It is given what the stages learn of a text; for a text that is being typed it asks the first of them itself.
+    (
+        "ide",
+        &[
+            "span",
+            "source",
+            "diagnostic",
+            "files",
+            "math",
+            "color",
+            "units",
+            "schema",
+            "syntax",
+            "import",
+            "check",
+            "eval",
+            "scene",
+            "lower",
+        ],
+    ),
     ("report", &["span", "source", "diagnostic", "explain"]),
     ("aov", &["math", "scene", "output", "render", "why"]),
     // It names what the tracer found, by what lowering kept beside the scene.
