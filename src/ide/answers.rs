@@ -5,7 +5,7 @@ use crate::span::Span;
 use std::ops::Range;
 
 /// Bytes of a file of some analysis.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Location {
     /// The file.
     pub path: FilePath,
@@ -14,7 +14,7 @@ pub struct Location {
 }
 
 /// Bytes of a file, and what stands there afterwards.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Edit {
     /// What is replaced; empty where text is put in.
     pub at: Location,
