@@ -107,7 +107,7 @@ pub fn main() -> ExitCode {
         Command::Init(init) => init::run(&init),
         Command::Completions(completions) => manual::completions(&completions),
         Command::Man(man) => manual::man(&man),
-        Command::Lsp(lsp) => lsp::run(&lsp),
+        Command::Lsp(lsp) => lsp::run(&lsp, &interrupt),
         Command::Fmt(fmt) => fmt::run(&fmt, terminal, &interrupt),
         Command::Why(why) => why::run(&why, terminal),
     };

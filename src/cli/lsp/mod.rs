@@ -16,7 +16,7 @@
 //! | [`requests`] | one question of the protocol each |
 //! | [`diagnostics`], [`pages`] | what is said of documents, and where it is explained |
 //! | [`edits`] | what is different between two texts |
-//! | [`commands`] | what a person can have done |
+//! | [`commands`], [`render`] | what a person can have done |
 
 mod analyst;
 mod capabilities;
@@ -29,6 +29,7 @@ mod edits;
 mod frame;
 mod message;
 mod pages;
+mod render;
 mod requests;
 mod server;
 mod transport;
@@ -38,11 +39,12 @@ mod work;
 mod world;
 
 use super::args::Lsp;
+use super::interrupt::Interrupt;
 use super::{Exit, Problem, plain};
 use server::Server;
 
 /// Serves until the client says so or is gone.
-pub fn run(arguments: &Lsp) -> Result<Exit, Problem> {
+pub fn run(arguments: &Lsp, interrupt: &Interrupt) -> Result<Exit, Problem> {
     let cannot = |error| Problem::new(format!("cannot start a thread: {}", plain(&error)));
     let root = match &arguments.root {
         None => None,
@@ -51,7 +53,7 @@ pub fn run(arguments: &Lsp) -> Result<Exit, Problem> {
         })?),
     };
     let (connection, writer) = transport::start().map_err(cannot)?;
-    let exit = Server::new(connection, root).map_err(cannot)?.run();
+    let exit = Server::new(connection, root, interrupt.clone()).map_err(cannot)?.run();
     // What was sent last is written before the process ends.
     let _ = writer.join();
     Ok(exit)

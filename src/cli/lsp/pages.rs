@@ -22,6 +22,11 @@ impl Pages {
         Some(uri_of(&path).into())
     }
 
+    /// Removes them. One that is asked for later is there again.
+    pub fn tidy(&self) {
+        *self.folder.lock().unwrap_or_else(PoisonError::into_inner) = None;
+    }
+
     fn path(&self, code: Code) -> Option<PathBuf> {
         // A folder is there or not.
         let mut folder = self.folder.lock().unwrap_or_else(PoisonError::into_inner);

@@ -3,7 +3,7 @@
 
 use super::capabilities::initialized;
 use super::client::{Client, encoding};
-use super::commands;
+use super::commands::{self, Order};
 use super::diagnostics::Board;
 use super::documents::{Documents, Key};
 use super::pages::Pages;
@@ -12,7 +12,8 @@ use super::uri::path_of;
 use super::view::{Session, View};
 use super::work::{Answer, Desk, Failure, Question, Told};
 use crate::cli::Exit;
-use crossbeam_channel::{Receiver, bounded, select};
+use crate::cli::interrupt::Interrupt;
+use crossbeam_channel::{Receiver, Sender, bounded, select};
 use gen_lsp_types as lsp;
 use lsp::LspNotificationMethod as Method;
 use lsp_server::{Connection, ErrorCode, Message, Notification, ReqQueue, Request, RequestId, Response};
@@ -45,6 +46,9 @@ pub struct Server {
     view: Arc<View>,
     desk: Arc<Desk>,
     told: Receiver<Told>,
+    /// Where others tell something.
+    tell: Sender<Told>,
+    interrupt: Interrupt,
     /// What waits for an answer, each with what says that none is wanted.
     waiting: ReqQueue<Arc<AtomicBool>, ()>,
     count: usize,
@@ -61,7 +65,7 @@ impl Server {
     /// # Errors
     ///
     /// Where the system gives no more threads.
-    pub fn new(connection: Connection, root: Option<PathBuf>) -> io::Result<Server> {
+    pub fn new(connection: Connection, root: Option<PathBuf>, interrupt: Interrupt) -> io::Result<Server> {
         let (tell, told) = bounded(QUEUE);
         let (client, pages) = (Client::default(), Pages::default());
         let session = Session { client, encoding: encoding(&Value::Null), root, pages };
@@ -72,6 +76,8 @@ impl Server {
             view: Arc::new(view),
             desk: Desk::start(&tell)?,
             told,
+            tell,
+            interrupt,
             waiting: ReqQueue::default(),
             count: 0,
             board: Board::default(),
@@ -96,6 +102,8 @@ impl Server {
                 },
             }
         }
+        // Others may hold what was known, and with it the pages, until the process ends.
+        self.view.session.pages.tidy();
         // The protocol's codes: 1 for an end that was not announced.
         if self.life == Life::Ending { Exit::Done } else { Exit::Diagnostics }
     }
@@ -138,23 +146,54 @@ impl Server {
                 self.life = Life::Ending;
                 self.send(id, Ok(Value::Null));
             }
+            (Life::Serving, _) if self.count >= MOST_WAITING => {
+                self.send(id, Err(Failure::plain("too many requests wait already")));
+            }
+            (Life::Serving, lsp::LspRequestMethod::WorkspaceExecuteCommand) => {
+                if let Err(failure) = self.execute(id.clone(), params) {
+                    self.finish(id, Err(failure));
+                }
+            }
             (Life::Serving, _) => self.ask(id, &method, params),
         }
     }
 
     /// Has a question answered.
     fn ask(&mut self, id: RequestId, method: &str, params: Value) {
-        let Some((lane, run)) = requests::find(method).or_else(|| commands::find(method)) else {
+        let Some((lane, run)) = requests::find(method) else {
             let failure = Failure::new(ErrorCode::MethodNotFound, format!("`{method}` is not known here"));
             return self.send(id, Err(failure));
         };
-        if self.count >= MOST_WAITING {
-            return self.send(id, Err(Failure::plain("too many requests wait already")));
+        let cancelled = self.register(&id);
+        self.desk.ask(lane, Question { id, run, params, view: self.view.clone(), cancelled });
+    }
+
+    /// Has something done.
+    fn execute(&mut self, id: RequestId, params: Value) -> Answer<()> {
+        let cancelled = self.register(&id);
+        let (command, about) = commands::wanted(params)?;
+        let (view, told, interrupt) = (self.view.clone(), self.tell.clone(), self.interrupt.clone());
+        let order = Order { id, key: Key::of(&about.uri), about, view, cancelled, told, interrupt };
+        match command.as_str() {
+            commands::PREVIEW => Err(Failure::plain("there is no preview yet")),
+            _ => commands::render(order),
         }
+    }
+
+    /// Waits for an answer from somebody else, who may see whether it is still wanted.
+    fn register(&mut self, id: &RequestId) -> Arc<AtomicBool> {
         let cancelled = Arc::new(AtomicBool::new(false));
         self.count += 1;
         self.waiting.incoming.register(id.clone(), cancelled.clone());
-        self.desk.ask(lane, Question { id, run, params, view: self.view.clone(), cancelled });
+        cancelled
+    }
+
+    /// Passes on an answer, unless it was cancelled and so is answered already.
+    fn finish(&mut self, id: RequestId, answer: Answer<Value>) {
+        if self.waiting.incoming.complete(&id).is_some() {
+            self.count -= 1;
+            self.send(id, answer);
+        }
     }
 
     fn initialize(&mut self, params: &Value) -> Answer<Value> {
@@ -298,13 +337,9 @@ impl Server {
 
     fn hear(&mut self, told: Told) {
         match told {
-            Told::Answered(id, answer) => {
-                // One that was cancelled is answered already.
-                if self.waiting.incoming.complete(&id).is_some() {
-                    self.count -= 1;
-                    self.send(id, answer);
-                }
-            }
+            Told::Answered(id, answer) => self.finish(id, answer),
+            Told::Notifies(method, params) => self.notify(method, params),
+            Told::Asks(method, params) => self.ask_client(method, params),
             Told::Looked { key, view, reads, found } => {
                 let seen = view.documents.get(&key).map(|document| document.stamp);
                 let now = self.view.documents.get(&key).map(|document| document.stamp);
@@ -344,12 +379,20 @@ impl Server {
         };
         let params = lsp::RegistrationParams { registrations: vec![registration] };
         let method = lsp::LspRequestMethod::ClientRegisterCapability.as_str().to_string();
+        self.ask_client(method, params);
+    }
+
+    /// Asks the client something whose answer makes no difference.
+    fn ask_client(&mut self, method: String, params: impl serde::Serialize) {
         let request = self.waiting.outgoing.register(method, params, ());
         let _ = self.connection.sender.send(request.into());
     }
 
     fn publish(&self, params: lsp::PublishDiagnosticsParams) {
-        let method = Method::TextDocumentPublishDiagnostics.as_str().to_string();
+        self.notify(Method::TextDocumentPublishDiagnostics.as_str().to_string(), params);
+    }
+
+    fn notify(&self, method: String, params: impl serde::Serialize) {
         let _ = self.connection.sender.send(Notification::new(method, params).into());
     }
 

@@ -70,6 +70,10 @@ pub struct Question {
 pub enum Told {
     /// A question is answered.
     Answered(RequestId, Answer<Value>),
+    /// Something for the client, by method and parameters.
+    Notifies(String, Value),
+    /// A question for the client, whose answer makes no difference.
+    Asks(String, Value),
     /// A document was looked at.
     Looked {
         /// Which.
@@ -228,7 +232,7 @@ impl Worker {
 }
 
 /// Does something that may panic, which is a bug: it is answered, and the server lives.
-fn guarded<T>(work: impl FnOnce() -> T) -> Answer<T> {
+pub fn guarded<T>(work: impl FnOnce() -> T) -> Answer<T> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
         let said = panic.downcast_ref::<&str>().map(ToString::to_string);
         let said = said.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();

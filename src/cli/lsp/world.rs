@@ -46,10 +46,10 @@ impl World {
         let Some(file) = key.path() else { return World::alone(view, key) };
         let (base, whole) = view.base(file);
         let disk = Disk::below(&base).ok();
-        let place = |file: &Path| match &disk {
-            Some(disk) => disk.path_of(file).ok(),
-            None => FilePath::root("").join(file.strip_prefix(&base).ok()?.to_str()?).ok(),
-        };
+        let plainly = |file: &Path| FilePath::root("").join(file.strip_prefix(&base).ok()?.to_str()?).ok();
+        // A folder that has vanished cannot be looked at, and still has a name.
+        let place =
+            |file: &Path| disk.as_ref().and_then(|disk| disk.path_of(file).ok()).or_else(|| plainly(file));
         let open = |(key, document): (&Key, &Arc<Document>)| {
             Some((place(key.path()?)?, (key.clone(), document.clone())))
         };

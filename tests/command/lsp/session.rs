@@ -98,6 +98,23 @@ fn a_document_that_was_never_saved_is_understood() {
 }
 
 #[test]
+fn a_picture_is_made_of_what_is_not_saved() {
+    let desk = Desk::new();
+    let mut client = Client::with(&desk, json!({ "window": { "workDoneProgress": true } }));
+    client.open("ball.rt", "sphere { radius: 1m }\nrender { size: (24, 18), samples: 1 }\n");
+    let about = json!([{ "uri": client.uri("ball.rt"), "camera": null }]);
+    let made = client.ask("workspace/executeCommand", json!({ "command": "rtc.render", "arguments": about }));
+    assert!(made.unwrap()["path"].as_str().unwrap().ends_with("ball.png"));
+    assert_eq!(super::super::read_png(&desk.get("ball.png")).0, [24, 18]);
+    client.wait("progress", |message| message["params"]["value"]["kind"] == "end");
+    client.replace("ball.rt", 2, "sphere { radius: 8deg }\n");
+    let refused =
+        client.ask("workspace/executeCommand", json!({ "command": "rtc.render", "arguments": about }));
+    assert_eq!(refused.unwrap_err()["message"], "the scene has an error");
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
 fn every_question_has_an_answer() {
     let desk = Desk::new();
     let mut client = Client::new(&desk);
