@@ -10,7 +10,10 @@ mod diagnostics;
 mod documents;
 mod folder;
 mod language;
+#[path = "../src/cli/lsp/document.rs"]
+mod document;
 mod dump;
+mod edits;
 mod expand;
 mod export;
 mod format;
@@ -21,4 +24,6 @@ mod oracle;
 mod parse;
 mod pictures;
 mod scenes;
+#[path = "../fuzz/script.rs"]
+mod script;
 mod why;

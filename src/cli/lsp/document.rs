@@ -1,7 +1,8 @@
 //! The text of a document as the client edits it, and places in it as the client counts them.
 //!
 //! A line ends with `\n`, `\r\n` or `\r`, as the protocol has it. A place that is not there is the nearest one before
-//! it, so that no edit is outside the text.
+//! it, so that no edit is outside the text. `fuzz/script.rs` holds it against a text that is edited by the letter of the
+//! protocol.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -128,94 +129,4 @@ fn bytes_of(line: &str, units: usize, length: impl Fn(char) -> usize) -> usize {
         fits
     };
     line.chars().take_while(fits).map(char::len_utf8).sum()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    const ENCODINGS: [Encoding; 3] = [Encoding::Utf8, Encoding::Utf16, Encoding::Utf32];
-
-    /// What a client holds: lines with their ends, each as the units it counts in.
-    fn by_definition(text: &str, place: Place, encoding: Encoding) -> usize {
-        let mut lines = vec![];
-        let mut rest = text;
-        while let Some(at) = rest.find(['\n', '\r']) {
-            let end = if rest[at..].starts_with("\r\n") { at + 2 } else { at + 1 };
-            lines.push((&rest[..at], end));
-            rest = &rest[end..];
-        }
-        lines.push((rest, rest.len()));
-        let Some((line, _)) = lines.get(place.line as usize) else { return text.len() };
-        let before: usize = lines[..place.line as usize].iter().map(|(_, length)| length).sum();
-        let units = |prefix: &str| match encoding {
-            Encoding::Utf8 => prefix.len(),
-            Encoding::Utf16 => prefix.encode_utf16().count(),
-            Encoding::Utf32 => prefix.chars().count(),
-        };
-        let ends = line.char_indices().map(|(at, c)| at + c.len_utf8());
-        let fits = ends.filter(|&end| units(&line[..end]) <= place.character as usize);
-        before + fits.last().unwrap_or(0)
-    }
-
-    fn some_text() -> impl Strategy<Value = String> {
-        let piece = prop_oneof![
-            "[a-z ]{0,4}",
-            Just("\n".into()),
-            Just("\r\n".into()),
-            Just("\r".into()),
-            Just("é".into()),
-            Just("😀".into()),
-            Just("\u{2028}".into())
-        ];
-        proptest::collection::vec(piece, 0..12).prop_map(|pieces: Vec<String>| pieces.concat())
-    }
-
-    fn some_place() -> impl Strategy<Value = Place> {
-        (0u32..12, 0u32..14).prop_map(|(line, character)| Place { line, character })
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(10_000))]
-
-        #[test]
-        fn places_are_what_the_protocol_says(text in some_text(), place in some_place()) {
-            let document = Text::new(text.clone());
-            for encoding in ENCODINGS {
-                let byte = document.byte(place, encoding);
-                prop_assert_eq!(byte, by_definition(&text, place, encoding));
-                prop_assert_eq!(document.byte(document.place(byte, encoding), encoding), byte);
-            }
-        }
-
-        #[test]
-        fn after_an_edit_the_lines_are_those_of_a_new_text(
-            text in some_text(),
-            edits in proptest::collection::vec((some_place(), some_place(), some_text()), 1..8),
-            which in 0usize..3,
-        ) {
-            let encoding = ENCODINGS[which];
-            let mut document = Text::new(text.clone());
-            let mut plain = text;
-            for (a, b, with) in edits {
-                let (start, end) = (by_definition(&plain, a, encoding), by_definition(&plain, b, encoding));
-                let range = start.min(end)..start.max(end);
-                document.replace(range.clone(), &with);
-                plain.replace_range(range, &with);
-                prop_assert_eq!(&document, &Text::new(plain.clone()));
-            }
-        }
-    }
-
-    #[test]
-    fn a_place_within_a_character_is_the_one_before() {
-        let text = Text::new("a😀b\r\nc".into());
-        let byte = |character, encoding| text.byte(Place { line: 0, character }, encoding);
-        assert_eq!([0, 1, 2, 3, 4, 9].map(|n| byte(n, Encoding::Utf16)), [0, 1, 1, 5, 6, 6]);
-        assert_eq!([0, 1, 2, 4, 5, 9].map(|n| byte(n, Encoding::Utf8)), [0, 1, 1, 1, 5, 6]);
-        assert_eq!([0, 1, 2, 3, 9].map(|n| byte(n, Encoding::Utf32)), [0, 1, 5, 6, 6]);
-        assert_eq!(text.place(7, Encoding::Utf16), Place { line: 0, character: 4 });
-        assert_eq!(text.byte(Place { line: 7, character: 0 }, Encoding::Utf8), 9);
-    }
 }
