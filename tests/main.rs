@@ -15,6 +15,7 @@ mod expand;
 mod export;
 mod format;
 mod fuzz;
+mod ide;
 #[path = "../fuzz/invariants.rs"]
 mod invariants;
 mod oracle;
