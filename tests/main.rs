@@ -18,6 +18,7 @@ mod expand;
 mod export;
 mod format;
 mod fuzz;
+mod ide;
 #[path = "../fuzz/invariants.rs"]
 mod invariants;
 mod oracle;

@@ -2,6 +2,7 @@
 
 use crate::files::FilePath;
 use crate::span::Span;
+use std::cmp::Ordering;
 use std::ops::Range;
 
 /// Bytes of a file of some analysis.
@@ -11,6 +12,20 @@ pub struct Location {
     pub path: FilePath,
     /// Its bytes.
     pub range: Range<usize>,
+}
+
+impl Ord for Location {
+    /// By file and place.
+    fn cmp(&self, other: &Location) -> Ordering {
+        let key = |location: &Location| (location.range.start, location.range.end);
+        self.path.cmp(&other.path).then_with(|| key(self).cmp(&key(other)))
+    }
+}
+
+impl PartialOrd for Location {
+    fn partial_cmp(&self, other: &Location) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
 }
 
 /// Bytes of a file, and what stands there afterwards.

@@ -11,27 +11,38 @@
 mod answers;
 mod colours;
 mod complete;
+mod cursor;
 mod definition;
 mod fixes;
 mod folds;
 mod hints;
 mod hover;
 mod lenses;
+mod lex;
 mod links;
+mod named;
 mod rename;
+mod say;
 mod selection;
 mod signature;
 mod symbols;
 mod tokens;
+mod typing;
+mod walk;
 
 pub use answers::*;
 pub use colours::present;
 pub use complete::complete;
 pub use rename::{references, rename};
+pub use say::{default, range};
 pub use signature::signatures;
 
+use crate::check::Notes;
 use crate::diagnostic::Diagnostic;
+use crate::eval::Values;
 use crate::files::FilePath;
+use crate::import::ImportedFile;
+use crate::scene::Camera;
 use crate::source::{Source, Sources};
 use crate::span::{SourceId, Span};
 use std::ops::Range;
@@ -50,9 +61,35 @@ pub struct Analysis {
     pub diagnostics: Vec<Diagnostic>,
     /// One line for each default that was chosen for the user.
     pub notes: Vec<String>,
+    /// The camera that takes the picture, and where its block stands, where somebody wrote it and nothing is wrong.
+    camera: Option<(Camera, Span)>,
+    study: Study,
+}
+
+/// What the stages learn of a text on their way.
+#[derive(Debug, Default)]
+pub struct Study {
+    /// The trees of all files.
+    pub files: Vec<ImportedFile>,
+    /// What names mean.
+    pub notes: Notes,
+    /// What expressions come to.
+    pub values: Values,
 }
 
 impl Analysis {
+    /// Puts together what the stages found out.
+    pub(crate) fn new(
+        sources: Sources,
+        main: SourceId,
+        diagnostics: Vec<Diagnostic>,
+        notes: Vec<String>,
+        camera: Option<(Camera, Span)>,
+        study: Study,
+    ) -> Analysis {
+        Analysis { sources, main, diagnostics, notes, camera, study }
+    }
+
     /// The text that was analysed.
     pub fn source(&self) -> &Source {
         self.sources.get(self.main)
@@ -65,7 +102,7 @@ impl Analysis {
 
     /// The files of the scene that are texts of the language, the one that was analysed among them.
     pub fn files(&self) -> impl Iterator<Item = (SourceId, &Source)> {
-        self.sources.iter()
+        self.study.files.iter().map(|file| (file.source, self.sources.get(file.source)))
     }
 
     /// What can be said of what stands at a byte: its type, its value, the words above its declaration.
