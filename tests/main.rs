@@ -10,16 +10,22 @@ mod diagnostics;
 mod documents;
 mod folder;
 mod language;
+#[path = "../src/cli/lsp/document.rs"]
+mod document;
 mod dump;
+mod edits;
 mod expand;
 mod export;
 mod format;
 mod fuzz;
+mod ide;
 #[path = "../fuzz/invariants.rs"]
 mod invariants;
 mod oracle;
 mod parse;
 mod pictures;
 mod scenes;
+#[path = "../fuzz/script.rs"]
+mod script;
 mod trust;
 mod why;

@@ -5,6 +5,7 @@
 
 mod compare;
 mod export;
+mod lsp;
 mod preview;
 mod processors;
 mod readme;
@@ -54,6 +55,10 @@ cargo xtask latency [ROUNDS]
 
   drives the page of `rtc watch` in Chromium, on an idle machine, and prints how long a save takes to be seen
 
+cargo xtask lsp
+
+  types into a document of 2 000 lines, on an idle machine, and prints how soon the language server answers
+
 cargo xtask e2e [STEP…]
 
   terminal   progress on a pseudo-terminal, and Ctrl-C within 100 ms
@@ -87,6 +92,7 @@ fn main() -> ExitCode {
         Some((task, steps)) if task == "e2e" => e2e(steps),
         Some((task, [])) if task == "gallery" => gallery(),
         Some((task, arguments)) if task == "compare" => compare::compare(arguments),
+        Some((task, arguments)) if task == "lsp" => lsp::latency(arguments),
         Some((task, arguments)) if task == "latency" => preview::latency(arguments),
         _ => Err(USAGE.into()),
     };

@@ -60,11 +60,16 @@ struct Known {
     length: usize,
 }
 
+/// Reads and compiles a scene in another way: of texts that are not saved.
+pub type Load = Box<dyn Fn(&Reading, &Overrides) -> Result<Loaded, Problem> + Send>;
+
 /// Reads a scene whenever what it reads has changed.
 pub struct Reader {
     scene: PathBuf,
     reading: Reading,
     overrides: Overrides,
+    /// In place of the disk: what it gives is whole, and may be new whenever somebody looks.
+    load: Option<Load>,
     /// Where the picture goes: no file that the scene may be made of.
     outputs: Vec<PathBuf>,
     known: BTreeMap<PathBuf, Known>,
@@ -100,12 +105,18 @@ impl Reader {
             scene: scene.into(),
             reading: reading.clone(),
             overrides,
+            load: None,
             outputs,
             known: BTreeMap::new(),
             texts: BTreeMap::new(),
             doubtful: None,
             pending: None,
         }
+    }
+
+    /// The same, in another way.
+    pub fn by(self, load: Load) -> Reader {
+        Reader { load: Some(load), ..self }
     }
 
     /// The settings of the command line by name, which are then for the caller to give. None where they are not all of
@@ -130,6 +141,7 @@ impl Reader {
     /// Looks whether something has changed, and if so reads and compiles. `set` stands beside the settings of the command
     /// line, in whose place it comes; `anyway` compiles also what is the same; `reads` is called before anything is read.
     pub fn look(&mut self, set: &BTreeMap<String, String>, anyway: bool, reads: impl FnOnce()) -> Seen {
+        let anyway = anyway || self.load.is_some();
         let changed = match &mut self.pending {
             Some(pending) => has_changed(&mut pending.known),
             None => self.known.is_empty() || has_changed(&mut self.known),
@@ -144,7 +156,10 @@ impl Reader {
         let reading = Reading { set: settings(&self.reading.set, set), ..self.reading.clone() };
         // Looked at before they are read: what changes in between looks otherwise later.
         let looks = self.files().map(|path| (absolute(&path), look(&path))).collect();
-        let loaded = scene::load(&self.scene, &reading, &self.overrides);
+        let loaded = match &self.load {
+            Some(load) => load(&reading, &self.overrides),
+            None => scene::load(&self.scene, &reading, &self.overrides),
+        };
         let known = self.read_by(&loaded, &looks);
         self.judge(Read { loaded, known, at: Instant::now() })
     }
@@ -170,6 +185,9 @@ impl Reader {
 
     /// How long to wait before what was read is believed, if it looks as if somebody were in the middle of writing it.
     fn doubt(&mut self, read: &Read) -> Option<Duration> {
+        if self.load.is_some() {
+            return None;
+        }
         let had = |path: &PathBuf| self.known.get(path).is_some_and(|before| before.length > 0);
         let emptied = read.known.iter().any(|(path, now)| now.length == 0 && had(path));
         let (wrong, half) = match &read.loaded {
