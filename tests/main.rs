@@ -14,6 +14,7 @@ mod dump;
 mod expand;
 mod export;
 mod format;
+mod halt;
 mod fuzz;
 #[path = "../fuzz/invariants.rs"]
 mod invariants;

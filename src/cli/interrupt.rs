@@ -6,6 +6,7 @@ use rt_lang::render::Control;
 use std::collections::BTreeSet;
 use std::io;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -18,6 +19,10 @@ pub struct Interrupt {
     /// The render that is to stop first.
     control: Arc<Mutex<Option<Arc<Control>>>>,
     unfinished: Arc<Mutex<BTreeSet<PathBuf>>>,
+    /// Whether it was asked to end.
+    asked: Arc<AtomicBool>,
+    /// Whether the work under way ends the process when it was asked to.
+    keeps: Arc<AtomicBool>,
 }
 
 impl Interrupt {
@@ -33,6 +38,21 @@ impl Interrupt {
     /// Stops this render, and no earlier one, when the process is asked to end.
     pub fn watch(&self, control: Arc<Control>) {
         *lock(&self.control) = Some(control);
+    }
+
+    /// From here on who is asked to end leaves that to the work under way, which keeps what there is and then calls
+    /// [`Interrupt::kept`]. Asked twice, the process ends at once.
+    pub fn keep(&self) {
+        self.keeps.store(true, SeqCst);
+    }
+
+    /// Ends the process if that was asked for.
+    pub fn kept(&self, terminal: Terminal) {
+        self.keeps.store(false, SeqCst);
+        // Asked before, nobody else does it.
+        if self.asked.load(SeqCst) {
+            self.leave(terminal)
+        }
     }
 
     /// Waits for the end that was asked for.
@@ -59,10 +79,18 @@ impl Interrupt {
     }
 
     fn end(&self, terminal: Terminal) {
+        let again = self.asked.swap(true, SeqCst);
         if let Some(control) = &*lock(&self.control) {
             control.cancel();
         }
+        if self.keeps.load(SeqCst) && !again {
+            return;
+        }
         std::thread::sleep(GRACE);
+        self.leave(terminal)
+    }
+
+    fn leave(&self, terminal: Terminal) -> ! {
         // Held until the process is gone, so that nobody makes or moves a file from here on.
         let unfinished = lock(&self.unfinished);
         for path in unfinished.iter() {

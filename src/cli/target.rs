@@ -73,6 +73,17 @@ pub struct Aside {
 impl Aside {
     /// Makes the file beside its place, which shows that it can be written.
     pub fn beside(path: &Path, interrupt: &Interrupt) -> Result<Aside, Problem> {
+        Aside::make(path, None, interrupt)
+    }
+
+    /// The same for a place that one process writes again and again: the file has always the same name, so that what is left
+    /// of one that was killed is not left for ever.
+    pub fn always_beside(path: &Path, interrupt: &Interrupt) -> Result<Aside, Problem> {
+        let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+        Aside::make(path, name.as_deref(), interrupt)
+    }
+
+    fn make(path: &Path, name: Option<&str>, interrupt: &Interrupt) -> Result<Aside, Problem> {
         let cannot = |reason: String| Problem::new(format!("cannot write `{}`: {reason}", path.display()));
         let existing = fs::metadata(path).ok();
         if existing.as_ref().is_some_and(|existing| !existing.is_file()) {
@@ -85,7 +96,17 @@ impl Aside {
             return Err(cannot(format!("there is no folder `{}`", folder.display())));
         }
         let made = interrupt.create(|| {
-            let file = temporary(existing.map(|existing| existing.permissions())).tempfile_in(folder)?;
+            let mut builder = temporary(existing.map(|existing| existing.permissions()));
+            let prefix = name.map(|name| format!(".{name}"));
+            if let Some(prefix) = &prefix {
+                let left = folder.join(format!("{prefix}{SUFFIX}"));
+                let removed = fs::remove_file(left);
+                removed.or_else(
+                    |error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) },
+                )?;
+                builder.prefix(prefix).rand_bytes(0);
+            }
+            let file = builder.tempfile_in(folder)?;
             let path = file.path().to_path_buf();
             Ok((file, path))
         });
@@ -105,8 +126,10 @@ impl Aside {
     pub fn finish(mut self) -> Result<(), Problem> {
         let Some((file, place)) = self.file.take() else { return Ok(()) };
         let path = file.path().to_path_buf();
-        let moved = self.interrupt.settle(&path, || file.persist(place).map(drop).map_err(|e| e.error));
-        moved.map_err(|error| cannot_write(&format!("`{}`", self.path.display()), &error))
+        let moved = self.interrupt.settle(&path, || file.persist(&place).map(drop).map_err(|e| e.error));
+        moved.map_err(|error| cannot_write(&format!("`{}`", self.path.display()), &error))?;
+        sync_folder(&place);
+        Ok(())
     }
 }
 
@@ -138,10 +161,21 @@ pub fn replace(path: &Path, bytes: &[u8], interrupt: &Interrupt) -> Result<(), P
     staged.finish()
 }
 
+/// Waits until it is on the disk which files a folder holds, where that can be asked for: the file is whole either way.
+fn sync_folder(place: &Path) {
+    let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if cfg!(unix) {
+        let _ = fs::File::open(folder).and_then(|folder| folder.sync_all());
+    }
+}
+
+/// How the names of files end that are being written.
+const SUFFIX: &str = ".tmp";
+
 /// The permissions of a file that is replaced, else those that the umask leaves.
-fn temporary(existing: Option<Permissions>) -> tempfile::Builder<'static, 'static> {
+fn temporary<'a>(existing: Option<Permissions>) -> tempfile::Builder<'a, 'static> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".rtc-").suffix(".tmp");
+    builder.prefix(".rtc-").suffix(SUFFIX);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
