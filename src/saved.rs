@@ -168,8 +168,7 @@ impl Subject {
         }
         let (last, others) = differences.split_last()?;
         let and = if others.is_empty() { String::new() } else { format!("{} and ", others.join(", ")) };
-        let differ = if others.is_empty() { "differs" } else { "differ" };
-        Some(format!("it is of another picture: {and}{last} {differ}"))
+        Some(format!("it is of another picture, which differs in {and}{last}"))
     }
 }
 

@@ -40,7 +40,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ("render", &["math", "color", "develop", "asset", "scene"]),
     ("output", &["math", "color", "develop", "scene"]),
     // Exact sums are shown by the picture that they make.
-    ("saved", &["scene", "render", "output"]),
+    ("saved", &["color", "scene", "render", "output"]),
     ("explain", &["diagnostic"]),
     ("change", &["span", "color", "scene", "syntax"]),
     ("inventory", &["source", "schema", "check", "eval", "scene"]),

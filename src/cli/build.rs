@@ -47,6 +47,9 @@ pub fn run(arguments: &Build, terminal: Terminal, interrupt: &Interrupt) -> Resu
     let threads = ThreadPoolBuilder::new().num_threads(arguments.taking.threads.unwrap_or(0)).build();
     let threads = threads.map_err(|error| Problem::new(format!("cannot start the threads: {error}")))?;
     let context = Context { arguments, threads, terminal, interrupt };
+    if arguments.keeping.keeps() {
+        interrupt.heed_requests();
+    }
     let mut messenger = Messenger::new(&arguments.messages, terminal, arguments.quiet);
     let mut worst = Exit::Done;
     for job in &jobs {
@@ -218,7 +221,7 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
         return Ok(Exit::Diagnostics);
     };
     let window = window(scene, arguments.crop)?;
-    let staged = stage(job, scene, window, context.interrupt)?;
+    let staged = stage(context, job, scene, window)?;
     let Some(from) = compiled.provenance(&loaded.sources) else { return Ok(Exit::Diagnostics) };
     let plan = Plan::new(arguments, from, window, &job.targets)?;
     let mut traced = context.threads.install(|| trace(context, &job.scene, plan))?;
@@ -326,7 +329,7 @@ fn window(scene: &Scene, crop: Option<[u32; 4]>) -> Result<Window, Problem> {
 }
 
 /// Makes sure before any work that every output can be written.
-fn stage(job: &Job, scene: &Scene, window: Window, interrupt: &Interrupt) -> Result<Vec<Staged>, Problem> {
+fn stage(context: &Context, job: &Job, scene: &Scene, window: Window) -> Result<Vec<Staged>, Problem> {
     for target in &job.targets {
         if let Some(reason) = target.format.refuses([window.width, window.height]) {
             return Err(Problem::new(reason.to_string()));
@@ -338,7 +341,9 @@ fn stage(job: &Job, scene: &Scene, window: Window, interrupt: &Interrupt) -> Res
             return Err(Problem::new(reason.to_string()).help(help));
         }
     }
-    job.targets.iter().map(|target| target.stage(interrupt)).collect()
+    let Context { arguments, interrupt, .. } = context;
+    let stage = if arguments.keeping.keeps() { Target::stage_again } else { Target::stage };
+    job.targets.iter().map(|target| stage(target, interrupt)).collect()
 }
 
 /// The exposure where the scene gives none. Two digits, so that the number that is printed gives the very picture when

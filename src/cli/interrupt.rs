@@ -1,4 +1,4 @@
-//! Ctrl-C and requests to end: whatever is going on, the process ends soon and leaves no torn file.
+//! Ctrl-C and requests to end: whatever is going on, the process ends soon and leaves no torn file. SIGUSR1: it keeps what it has.
 
 use super::Exit;
 use super::terminal::Terminal;
@@ -23,6 +23,8 @@ pub struct Interrupt {
     asked: Arc<AtomicBool>,
     /// Whether the work under way ends the process when it was asked to.
     keeps: Arc<AtomicBool>,
+    /// Whether it was asked to keep what there is, and not to end.
+    requested: Arc<AtomicBool>,
 }
 
 impl Interrupt {
@@ -38,6 +40,20 @@ impl Interrupt {
     /// Stops this render, and no earlier one, when the process is asked to end.
     pub fn watch(&self, control: Arc<Control>) {
         *lock(&self.control) = Some(control);
+    }
+
+    /// Takes SIGUSR1 for the request to keep what there is: it would end the process.
+    pub fn heed_requests(&self) {
+        #[cfg(unix)]
+        {
+            // Where it cannot be heeded it ends the process, as it does one that keeps nothing.
+            let _ = signal_hook::flag::register(signal_hook::consts::SIGUSR1, self.requested.clone());
+        }
+    }
+
+    /// Whether that was requested since this was asked last.
+    pub fn is_requested(&self) -> bool {
+        self.requested.swap(false, SeqCst)
     }
 
     /// From here on who is asked to end leaves that to the work under way, which keeps what there is and then calls

@@ -9,8 +9,6 @@ use rt_lang::output::{Facts, MOST_PIXELS};
 use rt_lang::render::making::Making;
 use rt_lang::saved::{CHANNELS, Saved, Subject};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Instant;
 
 /// The largest file of samples that is read: the most pixels, uncompressed, and a little more.
@@ -26,7 +24,7 @@ pub struct Places {
 
 /// The places that flags name, for a picture that goes to these targets; none where nothing is to be kept.
 pub fn places(arguments: &Keeping, targets: &[Target]) -> Result<Option<Places>, Problem> {
-    if arguments.checkpoint.is_none() && arguments.resume.is_none() {
+    if !arguments.keeps() {
         return Ok(None);
     }
     let named = arguments.checkpoint.clone().flatten();
@@ -68,8 +66,6 @@ pub struct Keeper<'a> {
     facts: &'a Facts,
     interrupt: &'a Interrupt,
     terminal: Terminal,
-    /// Set by SIGUSR1.
-    asked: Arc<AtomicBool>,
     /// When they were kept last, and how many samples a pixel those were.
     last: (Instant, f64),
     /// Whether it was said that they cannot be kept.
@@ -85,14 +81,8 @@ impl<'a> Keeper<'a> {
         interrupt: &'a Interrupt,
         terminal: Terminal,
     ) -> Keeper<'a> {
-        let asked = Arc::new(AtomicBool::new(false));
-        #[cfg(unix)]
-        {
-            // Without it the signal ends the process, as it does one that keeps nothing.
-            let _ = signal_hook::flag::register(signal_hook::consts::SIGUSR1, asked.clone());
-        }
         let last = (Instant::now(), 0.0);
-        Keeper { places, every, subject, facts, interrupt, terminal, asked, last, complained: false }
+        Keeper { places, every, subject, facts, interrupt, terminal, last, complained: false }
     }
 
     /// The picture to go on with; none where there is nothing to go on from. What differs is an error, and so is a file that
@@ -123,7 +113,7 @@ impl<'a> Keeper<'a> {
             Every::Samples(samples) => making.mean_samples() - self.last.1 >= f64::from(samples),
         };
         // What was asked for is done, whether it was due or not.
-        if self.asked.swap(false, Relaxed) || due {
+        if self.interrupt.is_requested() || due {
             self.keep(making);
         }
     }

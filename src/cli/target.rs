@@ -49,6 +49,19 @@ impl Target {
 
     /// Makes sure that it can be written, by making the file that will be moved there.
     pub fn stage(&self, interrupt: &Interrupt) -> Result<Staged, Problem> {
+        self.stage_as(interrupt, Aside::beside)
+    }
+
+    /// The same for a picture that may be begun again and again: see [`Aside::always_beside`].
+    pub fn stage_again(&self, interrupt: &Interrupt) -> Result<Staged, Problem> {
+        self.stage_as(interrupt, Aside::always_beside)
+    }
+
+    fn stage_as(
+        &self,
+        interrupt: &Interrupt,
+        aside: fn(&Path, &Interrupt) -> Result<Aside, Problem>,
+    ) -> Result<Staged, Problem> {
         if is_standard(&self.path) {
             if stdout().is_terminal() {
                 let problem = Problem::new("a picture is not text: it is not written to a terminal");
@@ -56,7 +69,7 @@ impl Target {
             }
             return Ok(Staged { target: self.clone(), aside: None });
         }
-        let aside = Aside::beside(&self.path, interrupt)?;
+        let aside = aside(&self.path, interrupt)?;
         Ok(Staged { target: self.clone(), aside: Some(aside) })
     }
 }
@@ -77,7 +90,7 @@ impl Aside {
     }
 
     /// The same for a place that one process writes again and again: the file has always the same name, so that what is left
-    /// of one that was killed is not left for ever.
+    /// of one that was killed is not left for ever. While another process writes there it is an error.
     pub fn always_beside(path: &Path, interrupt: &Interrupt) -> Result<Aside, Problem> {
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
         Aside::make(path, name.as_deref(), interrupt)
@@ -99,14 +112,12 @@ impl Aside {
             let mut builder = temporary(existing.map(|existing| existing.permissions()));
             let prefix = name.map(|name| format!(".{name}"));
             if let Some(prefix) = &prefix {
-                let left = folder.join(format!("{prefix}{SUFFIX}"));
-                let removed = fs::remove_file(left);
-                removed.or_else(
-                    |error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) },
-                )?;
+                remove_left(&folder.join(format!("{prefix}{SUFFIX}")))?;
                 builder.prefix(prefix).rand_bytes(0);
             }
             let file = builder.tempfile_in(folder)?;
+            // It tells others that it is not left behind; where nothing can be locked, they do not come.
+            let _ = file.as_file().try_lock();
             let path = file.path().to_path_buf();
             Ok((file, path))
         });
@@ -159,6 +170,18 @@ pub fn replace(path: &Path, bytes: &[u8], interrupt: &Interrupt) -> Result<(), P
     let mut staged = Target { path: path.into(), format: Format::Png }.stage(interrupt)?;
     staged.write(bytes)?;
     staged.finish()
+}
+
+/// Removes what a process has left that was killed, and not what one is writing.
+fn remove_left(path: &Path) -> io::Result<()> {
+    match fs::File::open(path) {
+        Ok(left) if matches!(left.try_lock(), Err(fs::TryLockError::WouldBlock)) => {
+            Err(io::ErrorKind::ResourceBusy.into())
+        }
+        Ok(_) => fs::remove_file(path),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(error),
+    }
 }
 
 /// Waits until it is on the disk which files a folder holds, where that can be asked for: the file is whole either way.

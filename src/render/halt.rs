@@ -1,8 +1,8 @@
 //! When a picture has enough samples, and where it has too few.
 //!
 //! **Noise** is the standard error of the displayed pixel, as a share of white: see [`Film::noise`]. It counts a pixel's samples
-//! as independent of each other. They are stratified, which makes the true error smaller on average, never larger: what is
-//! said is an upper bound.
+//! as independent of each other. They are stratified, which makes the true error smaller for the most part: what is said is
+//! rather too much than too little.
 //!
 //! **Where samples go.** With a noise target, pixels get [`Limits::least`] samples, and are then judged; those blocks of pixels
 //! that are too noisy go on to twice as many, and so on. A block goes on or stays behind as a whole, and only where all its
@@ -20,8 +20,9 @@ use super::film::{Film, MOST_SAMPLES, Window, most_failing};
 use crate::scene::Target;
 use std::time::Duration;
 
-/// Samples a pixel at which a noise target is first judged, unless said.
-pub const FIRST_NOISE_SAMPLES: u32 = 16;
+/// Samples a pixel at which a noise target is first judged, unless said. From 16 samples too few know how noisy they are:
+/// 93 of 100 pixels then lie within twice the error that they state, from these 97.
+pub const FIRST_NOISE_SAMPLES: u32 = 64;
 /// Samples a pixel at which a noise target is given up, unless said.
 pub const MOST_NOISE_SAMPLES: u32 = 1 << 16;
 

@@ -158,6 +158,7 @@ fn what_does_not_go_together_is_named() {
     let mut other = saved(Some(share(2)), 4..9, 5);
     other.subject.identity = foreign;
     let why = add(other);
-    let expected = "it is of another picture: its camera and its seed (9, not seed of the scene) differ";
+    let expected =
+        "it is of another picture, which differs in its camera and its seed (9, not seed of the scene)";
     assert!(why.contains(expected), "{why}");
 }

@@ -13,7 +13,7 @@ pub struct Halting {
     #[arg(long, value_name = "TIME", value_parser = time)]
     pub time: Option<Duration>,
 
-    /// Gives every pixel this many samples before noise is judged. By default 16.
+    /// Gives every pixel this many samples before noise is judged. By default 64.
     #[arg(long, value_name = "N", value_parser = super::values::samples, allow_negative_numbers = true)]
     pub min_samples: Option<u32>,
 }
@@ -41,6 +41,13 @@ pub struct Keeping {
     /// takes both from a Slurm job array 1-N, `auto/N` the first from Slurm's or Kubernetes' index.
     #[arg(long, value_name = "I/N|auto", value_parser = share)]
     pub shard: Option<Shard>,
+}
+
+impl Keeping {
+    /// Whether samples are kept.
+    pub fn keeps(&self) -> bool {
+        self.checkpoint.is_some() || self.resume.is_some()
+    }
 }
 
 /// How often samples are kept.
