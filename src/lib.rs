@@ -27,6 +27,7 @@
 //! | [`render`] | scene to film; cannot fail | places, files, syntax |
 //! | [`output`] | film to the bytes of image files, and back | files |
 //! | [`aov`] | what a picture shows besides its light, as channels | files |
+//! | [`saved`] | a picture in the making to bytes and back, and shares of one put together | files |
 //! | [`explain`] | the page on each diagnostic | how it is shown |
 //! | [`change`] | what is different between a scene and the one before it | where it is shown |
 //! | [`inventory`] | what stands in a picture, counted | how it is shown |
@@ -58,6 +59,7 @@ pub mod mend;
 pub mod output;
 pub mod render;
 pub mod report;
+pub mod saved;
 pub mod scene;
 pub mod schema;
 pub mod source;

@@ -410,7 +410,7 @@ kinds! {
         SIZE "size": Size = Value("(640, 480)"), within(1.0, 65_536.0);
         /// Camera paths a pixel.
         SAMPLES "samples": Int = Absent("64, or as many as `noise` needs"), within(1.0, 1_048_576.0);
-        /// Stop when the standard error of the displayed pixels is below this share of white.
+        /// Stop when the standard error of 99 of 100 displayed pixels is below this share of white.
         NOISE "noise": Number = Absent("see `samples`"), Range { low: 0.0, high: 1.0, above: true };
         /// Scattering events of a path: 0 shows what glows, 1 adds direct light.
         BOUNCES "bounces": Int = Value("8"), within(0.0, 1024.0);

@@ -40,6 +40,8 @@ const EDGES: &[(&str, &[&str])] = &[
     ("lint", &["span", "diagnostic", "math", "color", "eval", "scene", "lower"]),
     ("render", &["math", "color", "develop", "asset", "scene"]),
     ("output", &["math", "color", "develop", "scene"]),
+    // Exact sums are shown by the picture that they make.
+    ("saved", &["color", "scene", "render", "output"]),
     ("explain", &["diagnostic"]),
     ("change", &["span", "color", "scene", "syntax"]),
     ("inventory", &["source", "schema", "check", "eval", "scene"]),

@@ -17,6 +17,7 @@ mod edits;
 mod expand;
 mod export;
 mod format;
+mod halt;
 mod fuzz;
 mod ide;
 #[path = "../fuzz/invariants.rs"]

@@ -63,14 +63,14 @@ fn every_test_that_is_promised_is_there() {
         .filter(|name| name.contains('_') && name.chars().all(|c| c.is_ascii_lowercase() || c == '_'))
         .collect();
     assert!(names.len() > 15, "{names:?}");
-    let all: Vec<String> = [("src"), ("tests")]
-        .iter()
-        .flat_map(|folder| whole(folder))
-        .collect();
+    let all: Vec<String> = [("src"), ("tests")].iter().flat_map(|folder| whole(folder)).collect();
     for name in names {
         let test = format!("#[test]\n    fn {name}(");
         let alone = format!("#[test]\nfn {name}(");
-        assert!(all.iter().any(|code| code.contains(&test) || code.contains(&alone)), "there is no test `{name}`");
+        assert!(
+            all.iter().any(|code| code.contains(&test) || code.contains(&alone)),
+            "there is no test `{name}`"
+        );
     }
 }
 

@@ -1,10 +1,15 @@
 //! The flags and their help.
 
+mod keeping;
+mod merge;
 mod tools;
 mod values;
 mod why;
 
 use clap::{Args, Parser, Subcommand};
+use keeping::noise;
+pub use keeping::{Every, Halting, Keeping, Resume, Shard};
+pub use merge::Merge;
 use rt_lang::aov::Aov;
 use rt_lang::lower::Overrides;
 use rt_lang::output::Depth;
@@ -80,6 +85,9 @@ pub enum Command {
     /// Looks for mistakes in scenes, and makes no picture.
     #[command(after_help = tools::CHECK_EXAMPLES)]
     Check(Check),
+    /// Puts the shares of a picture together that `rtc build --shard` made, to the bits that one machine would have made.
+    #[command(after_help = merge::EXAMPLES)]
+    Merge(Merge),
     /// Develops an EXR that `rtc build` made: exposure, tone mapping and format, without tracing again.
     #[command(after_help = DEVELOP_EXAMPLES)]
     Develop(Develop),
@@ -119,6 +127,8 @@ Examples:
   rtc build balls.rt -o balls.png -o balls.exr       one picture in two forms
   rtc build balls.rt -o balls.exr --aov depth,object what else a picture shows
   rtc build balls.rt --crop 0,0,320,240 -o part.exr  only the top left quarter
+  rtc build balls.rt --noise 1% --time 10min         until it is clean, but no longer
+  rtc build balls.rt --samples 4096 --checkpoint     if it is ended, the same again goes on
   rtc build *.rt                                     each picture beside its scene
   cat balls.rt | rtc build - -o - > balls.png        standard input and output";
 
@@ -196,6 +206,14 @@ pub struct Build {
 
     #[command(flatten)]
     #[allow(missing_docs)]
+    pub halting: Halting,
+
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub keeping: Keeping,
+
+    #[command(flatten)]
+    #[allow(missing_docs)]
     pub reading: Reading,
 
     #[command(flatten)]
@@ -218,6 +236,11 @@ pub struct Taking {
     /// as long and leave 0.7 of the noise.
     #[arg(long, value_name = "N", value_parser = samples, allow_negative_numbers = true)]
     pub samples: Option<u32>,
+
+    /// Traces until the noise is so low, such as `1%` of white, in place of the scene's `samples` or `noise`: more samples
+    /// go where there is more of it. With `--samples`, at most that many.
+    #[arg(long, value_name = "SHARE", value_parser = noise, allow_negative_numbers = true)]
+    pub noise: Option<f64>,
 
     /// Chooses the random numbers, in place of the scene's `seed`. The same seed gives the same picture.
     #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
@@ -249,6 +272,8 @@ impl Taking {
             every_camera: false,
             size: self.size,
             samples: self.samples,
+            noise: self.noise,
+            limited: false,
             seed: self.seed,
             exposure: self.exposure.map(|exposure| match exposure {
                 Exposure::Auto => None,

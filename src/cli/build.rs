@@ -1,20 +1,24 @@
 //! `rtc build`: scenes to pictures.
 
-use super::args::Build;
+use super::args::{Build, Keeping, Resume};
 use super::input::is_standard;
 use super::interrupt::Interrupt;
 use super::messages::{Messenger, on_standard_output};
-use super::progress::{Progress, duration};
+use super::progress::duration;
 use super::target::{Staged, Target};
 use super::terminal::Terminal;
+use super::trace::{Plan, Traced, take, trace};
 use super::{Exit, Problem, scene as scenes};
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use rt_lang::aov::{self, Aov};
+use rt_lang::aov::Aov;
 use rt_lang::diagnostic::Diagnostic;
+use rt_lang::lower::Overrides;
 use rt_lang::output::{Channels, Depth, Facts, Format, Picture, encode, encode_exr};
-use rt_lang::render::feedback::Feedback;
-use rt_lang::render::{Cancelled, Control, Prepass, Rendered, Shown, Tracer, Window};
-use rt_lang::scene::{self, Background, Scene};
+use rt_lang::render::halt::Limit;
+use rt_lang::render::making::Making;
+use rt_lang::render::{Control, Prepass, Tracer, Window};
+use rt_lang::saved::Subject;
+use rt_lang::scene::{Background, Scene};
 use rt_lang::why::Provenance;
 use rt_lang::{FEW_BOUNCES, Finding};
 use std::fs;
@@ -29,29 +33,14 @@ struct Job {
 }
 
 /// What all jobs share.
-struct Context<'a> {
-    arguments: &'a Build,
+pub struct Context<'a> {
+    /// The flags.
+    pub arguments: &'a Build,
     threads: ThreadPool,
-    terminal: Terminal,
-    interrupt: &'a Interrupt,
-}
-
-/// A window of a picture as traced, and what there is to say of it.
-struct Traced {
-    picture: Picture,
-    samples: u32,
-    noise: f64,
-    target_met: bool,
-    /// What it is exposed by, whoever chose it.
-    stops: f64,
-    /// What would be chosen.
-    fitting: f64,
-    /// About the share of the light that the limit of bounces loses.
-    cut: f64,
-    /// What is shown beside the light.
-    channels: Channels,
-    /// What many paths tell, if that was asked for.
-    feedback: Option<Feedback>,
+    /// Where things are said.
+    pub terminal: Terminal,
+    /// Whether to end.
+    pub interrupt: &'a Interrupt,
 }
 
 /// Makes the pictures in turn, also those behind one that fails.
@@ -60,6 +49,9 @@ pub fn run(arguments: &Build, terminal: Terminal, interrupt: &Interrupt) -> Resu
     let threads = ThreadPoolBuilder::new().num_threads(arguments.taking.threads.unwrap_or(0)).build();
     let threads = threads.map_err(|error| Problem::new(format!("cannot start the threads: {error}")))?;
     let context = Context { arguments, threads, terminal, interrupt };
+    if arguments.keeping.keeps() {
+        interrupt.heed_requests();
+    }
     let mut messenger = Messenger::new(&arguments.messages, terminal, arguments.quiet);
     let mut worst = Exit::Done;
     for job in &jobs {
@@ -108,6 +100,8 @@ fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
     for job in &jobs {
         refuse_idle_aovs(&arguments.aov, &job.targets)?;
     }
+    refuse_what_shares_cannot(arguments, &all)?;
+    refuse_checkpoints_of_others(arguments)?;
     if on_standard_output(&arguments.messages) && all.iter().any(|target| is_standard(&target.path)) {
         let problem = Problem::new("the picture and the messages would both go to standard output");
         return Err(problem.help("write the picture to a file, or use `--message-format short`"));
@@ -166,6 +160,46 @@ fn refuse_idle_aovs(wanted: &[Aov], targets: &[Target]) -> Result<(), Problem> {
     Err(problem.help("write one, maybe beside another: `-o picture.png -o picture.exr`"))
 }
 
+/// A checkpoint is of one scene, and is none itself.
+fn refuse_checkpoints_of_others(arguments: &Build) -> Result<(), Problem> {
+    let named = match &arguments.keeping {
+        Keeping { checkpoint: Some(Some(file)), .. } | Keeping { resume: Some(Resume::From(file)), .. } => {
+            file
+        }
+        _ => return Ok(()),
+    };
+    if arguments.scenes.len() > 1 {
+        let problem = Problem::new("several scenes cannot be kept in one file");
+        return Err(problem.help("without its name each checkpoint goes beside its picture"));
+    }
+    refuse_inputs_as_outputs(&arguments.scenes, std::slice::from_ref(named))
+}
+
+/// A share has so many samples and nothing else, and is an EXR.
+fn refuse_what_shares_cannot(arguments: &Build, targets: &[Target]) -> Result<(), Problem> {
+    if arguments.keeping.shard.is_none() {
+        return Ok(());
+    }
+    let fixed = "every share must know its samples before: give `--samples N`";
+    let idle = match arguments {
+        Build { halting, .. } if halting.time.is_some() => Some(("--time", fixed)),
+        Build { taking, .. } if taking.noise.is_some() => Some(("--noise", fixed)),
+        Build { aov, .. } if !aov.is_empty() => {
+            Some(("--aov", "make these channels apart, with a few samples"))
+        }
+        Build { feedback: true, .. } => Some(("--feedback", "it is of the whole picture: ask for it apart")),
+        _ => None,
+    };
+    if let Some((flag, help)) = idle {
+        return Err(Problem::new(format!("`--shard` and `{flag}` do not go together")).help(help));
+    }
+    if targets.iter().all(|target| target.format == Format::Exr) {
+        return Ok(());
+    }
+    let problem = Problem::new("a share of a picture is an EXR, which holds its exact sums");
+    Err(problem.help("say where it goes: `-o part1.exr`"))
+}
+
 fn first_repeated(paths: &[PathBuf]) -> Option<&PathBuf> {
     let known: Vec<PathBuf> = paths.iter().map(|path| same(path)).collect();
     (1..paths.len()).find(|&i| known[..i].contains(&known[i])).map(|i| &paths[i])
@@ -183,7 +217,8 @@ fn same(path: &Path) -> PathBuf {
 fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit, Problem> {
     let Context { arguments, terminal, .. } = *context;
     let start = Instant::now();
-    let loaded = scenes::load(&job.scene, &arguments.reading, &arguments.taking.overrides())?;
+    let overrides = Overrides { limited: arguments.halting.time.is_some(), ..arguments.taking.overrides() };
+    let loaded = scenes::load(&job.scene, &arguments.reading, &overrides)?;
     refuse_inputs_as_outputs(&loaded.read(), &paths(&job.targets))?;
     let compiled = &loaded.compiled;
     let mut exit = messenger.say(&compiled.diagnostics, &loaded.sources)?;
@@ -191,21 +226,26 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
         return Ok(Exit::Diagnostics);
     };
     let window = window(scene, arguments.crop)?;
-    let staged = stage(job, scene, window, context.interrupt)?;
+    let staged = stage(context, job, scene, window)?;
     let Some(from) = compiled.provenance(&loaded.sources) else { return Ok(Exit::Diagnostics) };
-    let Ok(mut traced) = trace(context, job, from, window) else { context.interrupt.wait() };
-    let facts = facts(scene, &traced);
-    let depth = arguments.taking.look.bits;
-    context.threads.install(|| write(&traced.picture, &facts, &traced.channels, depth, staged))?;
+    let plan = Plan::new(arguments, from, window, &job.targets)?;
+    let mut traced = context.threads.install(|| trace(context, &job.scene, plan))?;
+    context.threads.install(|| match &traced.sums {
+        Some((subject, making)) => write_share(subject, making, &traced.facts, staged),
+        None => {
+            let depth = arguments.taking.look.bits;
+            write(&traced.picture, &traced.facts, &traced.channels, depth, staged)
+        }
+    })?;
     // The picture is safe before it is thought about.
     if arguments.feedback {
         traced.feedback = Some(context.threads.install(|| Tracer::new(scene).feedback(window)));
     }
-    let findings = findings(scene, &traced);
+    let findings = findings(scene, &traced, arguments.taking.samples.is_some());
     let mut warnings: Vec<Diagnostic> =
         findings.iter().filter_map(|finding| compiled.judge(finding)).collect();
     if let Some(feedback) = &traced.feedback {
-        warnings.extend(compiled.heed(feedback, traced.noise, &loaded.sources));
+        warnings.extend(compiled.heed(feedback, traced.facts.noise.unwrap_or(1.0), &loaded.sources));
     }
     if !warnings.is_empty() {
         exit = exit.max(messenger.say(&warnings, &loaded.sources)?);
@@ -222,11 +262,13 @@ const MOST_CUT: f64 = 0.05;
 /// The share of a picture that may burn out to white, by an exposure that was given.
 const MOST_BURNT_OUT: f64 = 0.25;
 
-/// What is probably not meant in a picture that is done.
-fn findings(scene: &Scene, traced: &Traced) -> Vec<Finding> {
-    let Traced { stops, fitting, samples, noise, .. } = *traced;
+/// What is probably not meant in a picture that is done. Who limits the samples knows that there may be noise.
+fn findings(scene: &Scene, traced: &Traced, limited: bool) -> Vec<Finding> {
+    let Traced { stops, fitting, samples: [_, samples], .. } = *traced;
     let mut findings = vec![];
-    if !traced.target_met {
+    if let Some(noise) = traced.facts.noise
+        && (traced.target_met, traced.limit, limited) == (false, Limit::Samples, false)
+    {
         findings.push(Finding::Noisy { noise, samples });
     }
     let bounces = scene.trace.bounces;
@@ -244,32 +286,36 @@ fn findings(scene: &Scene, traced: &Traced) -> Vec<Finding> {
     findings
 }
 
-fn facts(scene: &Scene, traced: &Traced) -> Facts {
-    Facts {
-        samples: Some(u64::from(traced.samples)),
-        seed: Some(scene.trace.seed),
-        scene: Some(scene.hash().to_hex().to_string()),
-        stops: Some(traced.stops),
-        tonemap: Some(scene.develop.tonemap),
-        ..Facts::unknown()
-    }
-}
-
 /// One line about a picture that is done.
 fn summary(job: &Job, scene: &Scene, traced: &Traced, time: Duration) -> String {
-    let noise = match scene.trace.target {
-        scene::Target::Samples(_) => String::new(),
-        scene::Target::Noise(_) => format!(" (noise {:.2} %)", traced.noise * 100.0),
-    };
     let stops = traced.stops;
     let exposure = match scene.develop.exposure {
         Some(_) => format!("exposure {stops}"),
         None => format!("exposure chosen; to keep it, write `exposure: {stops}` in the camera"),
     };
     let names = names(&job.targets);
-    let Traced { samples, picture: Picture { size: [width, height], .. }, .. } = traced;
-    let unit = if *samples == 1 { "sample" } else { "samples" };
-    format!("{names}: {width}×{height}, {samples} {unit}{noise} in {}, {exposure}", duration(time))
+    let Picture { size: [width, height], .. } = traced.picture;
+    let samples = samples(traced);
+    format!("{names}: {width}×{height}, {samples} in {}, {exposure}", duration(time))
+}
+
+/// How many samples were taken, what noise they leave, and why no more.
+fn samples(traced: &Traced) -> String {
+    let Traced { samples: [least, most], mean_samples, .. } = *traced;
+    let count = match (least, most) {
+        (1, 1) => "1 sample".to_string(),
+        (least, most) if least == most => format!("{most} samples"),
+        _ => format!("{least} to {most} samples ({mean_samples:.0} on average)"),
+    };
+    let share = traced.sums.as_ref().and_then(|(subject, _)| subject.share);
+    let share = share.map_or(String::new(), |share| format!(", share {share}"));
+    let noise = traced.facts.noise.map_or(String::new(), |noise| format!(" (noise {:.2} %)", noise * 100.0));
+    let why = match traced.limit {
+        Limit::Samples => String::new(),
+        Limit::Noise => ", as wanted,".to_string(),
+        Limit::Time => format!(", stopped by the time (again by `--samples {most}`),"),
+    };
+    format!("{count}{share}{noise}{why}")
 }
 
 /// The pixels to trace.
@@ -288,8 +334,16 @@ fn window(scene: &Scene, crop: Option<[u32; 4]>) -> Result<Window, Problem> {
 }
 
 /// Makes sure before any work that every output can be written.
-fn stage(job: &Job, scene: &Scene, window: Window, interrupt: &Interrupt) -> Result<Vec<Staged>, Problem> {
-    for target in &job.targets {
+fn stage(context: &Context, job: &Job, scene: &Scene, window: Window) -> Result<Vec<Staged>, Problem> {
+    refuse_misfits(&job.targets, scene, window)?;
+    let Context { arguments, interrupt, .. } = context;
+    let stage = if arguments.keeping.keeps() { Target::stage_again } else { Target::stage };
+    job.targets.iter().map(|target| stage(target, interrupt)).collect()
+}
+
+/// A format must be able to hold the picture.
+fn refuse_misfits(targets: &[Target], scene: &Scene, window: Window) -> Result<(), Problem> {
+    for target in targets {
         if let Some(reason) = target.format.refuses([window.width, window.height]) {
             return Err(Problem::new(reason.to_string()));
         }
@@ -300,66 +354,21 @@ fn stage(job: &Job, scene: &Scene, window: Window, interrupt: &Interrupt) -> Res
             return Err(Problem::new(reason.to_string()).help(help));
         }
     }
-    job.targets.iter().map(|target| target.stage(interrupt)).collect()
-}
-
-/// Traces a window, showing how far it is.
-fn trace(context: &Context, job: &Job, from: Provenance, window: Window) -> Result<Traced, Cancelled> {
-    let Build { aov, feedback, .. } = context.arguments;
-    let control = Arc::new(Control::new());
-    context.interrupt.watch(control.clone());
-    let shown = context.terminal.interactive && !context.arguments.quiet;
-    let _progress = shown.then(|| Progress::watch(control.clone(), job.scene.display().to_string()));
-    context.threads.install(|| take(from, window, aov, *feedback, &control))
-}
-
-/// Traces a window, with channels of what it shows besides its light, and with the noise of what is shown where feedback is
-/// wanted.
-fn take(
-    from: Provenance,
-    window: Window,
-    aovs: &[Aov],
-    feedback: bool,
-    control: &Control,
-) -> Result<Traced, Cancelled> {
-    let scene = from.scene;
-    let tracer = Tracer::new(scene);
-    let prepass = tracer.prepass();
-    let chosen = chosen_stops(&prepass);
-    let stops = scene.develop.exposure.unwrap_or(chosen);
-    let shown = Shown { stops, tonemap: scene.develop.tonemap };
-    let rendered = tracer.render(window, scene.trace.target, &prepass, shown, control)?;
-    let (offset, size) = ([window.x, window.y], [window.width, window.height]);
-    let mean = |x, y| rendered.film.mean(x, y);
-    let picture = Picture::gather(scene.trace.size, offset, size, mean);
-    let picture = match scene.trace.background {
-        Background::Sky => picture,
-        Background::Transparent => picture.with_alpha(|x, y| rendered.film.alpha(x, y)),
-    };
-    let Rendered { film, samples, mut noise, target_met } = rendered;
-    let of_first = aovs.iter().any(|aov| aov.is_of_first_hits());
-    let first = of_first.then(|| tracer.first_hits(window, samples, control)).transpose()?;
-    let channels = aov::channels(aovs, &film, first.as_ref(), from);
-    if feedback {
-        noise = film.noise(stops, scene.develop.tonemap);
-    }
-    let (fitting, cut) = (chosen, prepass.cut);
-    Ok(Traced { picture, samples, noise, target_met, stops, fitting, cut, channels, feedback: None })
+    Ok(())
 }
 
 /// Makes the picture of a scene, and writes it where it goes. None where it was cancelled.
 pub fn make(
     from: Provenance,
     target: &Target,
-    control: &Control,
+    control: &Arc<Control>,
     interrupt: &Interrupt,
 ) -> Result<Option<()>, Problem> {
-    let scene = from.scene;
-    let window = Window::whole(scene.trace.size);
-    let job = Job { scene: PathBuf::new(), targets: vec![target.clone()] };
-    let staged = stage(&job, scene, window, interrupt)?;
-    let Ok(traced) = take(from, window, &[], false, control) else { return Ok(None) };
-    write(&traced.picture, &facts(scene, &traced), &traced.channels, Depth::Eight, staged).map(Some)
+    let window = Window::whole(from.scene.trace.size);
+    refuse_misfits(std::slice::from_ref(target), from.scene, window)?;
+    let staged = target.stage(interrupt)?;
+    let Ok(traced) = take(from, window, control.clone()) else { return Ok(None) };
+    write(&traced.picture, &traced.facts, &traced.channels, Depth::Eight, vec![staged]).map(Some)
 }
 
 /// The exposure where the scene gives none. Two digits, so that the number that is printed gives the very picture when
@@ -378,12 +387,27 @@ pub fn write(
 ) -> Result<(), Problem> {
     for file in &mut staged {
         let bytes = match file.target.format {
-            Format::Exr => encode_exr(picture, facts, channels),
+            Format::Exr => encode_exr(picture, facts, channels.clone()),
             format => encode(picture, facts, format, depth),
         };
         let bytes = bytes.map_err(|reason| {
             Problem::new(format!("cannot write {}: {reason}", names(std::slice::from_ref(&file.target))))
         })?;
+        file.write(&bytes)?;
+    }
+    staged.into_iter().try_for_each(Staged::finish)
+}
+
+/// Writes a share of a picture to all its places.
+fn write_share(
+    subject: &Subject,
+    making: &Making,
+    facts: &Facts,
+    mut staged: Vec<Staged>,
+) -> Result<(), Problem> {
+    let bytes = subject.encode(making, facts);
+    let bytes = bytes.map_err(|reason| Problem::new(format!("cannot write a share: {reason}")))?;
+    for file in &mut staged {
         file.write(&bytes)?;
     }
     staged.into_iter().try_for_each(Staged::finish)

@@ -1,4 +1,4 @@
-//! Ctrl-C and requests to end: whatever is going on, the process ends soon and leaves no torn file.
+//! Ctrl-C and requests to end: whatever is going on, the process ends soon and leaves no torn file. SIGUSR1: it keeps what it has.
 
 use super::Exit;
 use super::terminal::Terminal;
@@ -6,6 +6,7 @@ use rt_lang::render::Control;
 use std::collections::BTreeSet;
 use std::io;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -18,6 +19,12 @@ pub struct Interrupt {
     /// The render that is to stop first.
     control: Arc<Mutex<Option<Arc<Control>>>>,
     unfinished: Arc<Mutex<BTreeSet<PathBuf>>>,
+    /// Whether it was asked to end.
+    asked: Arc<AtomicBool>,
+    /// Whether the work under way ends the process when it was asked to.
+    keeps: Arc<AtomicBool>,
+    /// Whether it was asked to keep what there is, and not to end.
+    requested: Arc<AtomicBool>,
 }
 
 impl Interrupt {
@@ -33,6 +40,35 @@ impl Interrupt {
     /// Stops this render, and no earlier one, when the process is asked to end.
     pub fn watch(&self, control: Arc<Control>) {
         *lock(&self.control) = Some(control);
+    }
+
+    /// Takes SIGUSR1 for the request to keep what there is: it would end the process.
+    pub fn heed_requests(&self) {
+        #[cfg(unix)]
+        {
+            // Where it cannot be heeded it ends the process, as it does one that keeps nothing.
+            let _ = signal_hook::flag::register(signal_hook::consts::SIGUSR1, self.requested.clone());
+        }
+    }
+
+    /// Whether that was requested since this was asked last.
+    pub fn is_requested(&self) -> bool {
+        self.requested.swap(false, SeqCst)
+    }
+
+    /// From here on who is asked to end leaves that to the work under way, which keeps what there is and then calls
+    /// [`Interrupt::kept`]. Asked twice, the process ends at once.
+    pub fn keep(&self) {
+        self.keeps.store(true, SeqCst);
+    }
+
+    /// Ends the process if that was asked for.
+    pub fn kept(&self, terminal: Terminal) {
+        self.keeps.store(false, SeqCst);
+        // Asked before, nobody else does it.
+        if self.asked.load(SeqCst) {
+            self.leave(terminal)
+        }
     }
 
     /// Waits for the end that was asked for.
@@ -59,11 +95,21 @@ impl Interrupt {
     }
 
     fn end(&self, terminal: Terminal) {
+        let again = self.asked.swap(true, SeqCst);
         let control = lock(&self.control).clone();
-        if let Some(control) = control {
+        if let Some(control) = &control {
             control.cancel();
+        }
+        if self.keeps.load(SeqCst) && !again {
+            return;
+        }
+        if control.is_some() {
             std::thread::sleep(GRACE);
         }
+        self.leave(terminal)
+    }
+
+    fn leave(&self, terminal: Terminal) -> ! {
         // Held until the process is gone, so that nobody makes or moves a file from here on.
         let unfinished = lock(&self.unfinished);
         for path in unfinished.iter() {

@@ -11,9 +11,11 @@
 //! | [`interrupt`] | Ctrl-C |
 //! | [`terminal`] | the one writer to standard error |
 //! | [`progress`] | how far a picture is |
+//! | [`trace`] | a picture from beginning to end |
+//! | [`keep`], [`shard`] | what of it is kept on the way, and which share of it is made |
 //! | [`live`] | the picture that follows the text |
 //! | [`lsp`] | the language server |
-//! | [`build`], [`check`], [`develop`], [`expand`], [`explain`], [`export`], [`fmt`], [`info`], [`init`], [`manual`], [`why`] | the commands |
+//! | [`build`], [`check`], [`develop`], [`expand`], [`explain`], [`export`], [`fmt`], [`info`], [`init`], [`manual`], [`merge`], [`why`] | the commands |
 
 mod args;
 mod build;
@@ -28,14 +30,18 @@ mod init;
 mod fmt;
 mod input;
 mod interrupt;
+mod keep;
 mod live;
 mod lsp;
 mod manual;
+mod merge;
 mod messages;
 mod progress;
 mod scene;
+mod shard;
 mod target;
 mod terminal;
+mod trace;
 mod why;
 
 use args::{Arguments, Command};
@@ -106,6 +112,7 @@ pub fn main() -> ExitCode {
         Command::Info(info) => info::run(&info, terminal),
         Command::Init(init) => init::run(&init),
         Command::Completions(completions) => manual::completions(&completions),
+        Command::Merge(merge) => merge::run(&merge, terminal, &interrupt),
         Command::Man(man) => manual::man(&man),
         Command::Lsp(lsp) => lsp::run(&lsp, &interrupt),
         Command::Fmt(fmt) => fmt::run(&fmt, terminal, &interrupt),

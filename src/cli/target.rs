@@ -49,6 +49,19 @@ impl Target {
 
     /// Makes sure that it can be written, by making the file that will be moved there.
     pub fn stage(&self, interrupt: &Interrupt) -> Result<Staged, Problem> {
+        self.stage_as(interrupt, Aside::beside)
+    }
+
+    /// The same for a picture that may be begun again and again: see [`Aside::always_beside`].
+    pub fn stage_again(&self, interrupt: &Interrupt) -> Result<Staged, Problem> {
+        self.stage_as(interrupt, Aside::always_beside)
+    }
+
+    fn stage_as(
+        &self,
+        interrupt: &Interrupt,
+        aside: fn(&Path, &Interrupt) -> Result<Aside, Problem>,
+    ) -> Result<Staged, Problem> {
         if is_standard(&self.path) {
             if stdout().is_terminal() {
                 let problem = Problem::new("a picture is not text: it is not written to a terminal");
@@ -56,7 +69,7 @@ impl Target {
             }
             return Ok(Staged { target: self.clone(), aside: None });
         }
-        let aside = Aside::beside(&self.path, interrupt)?;
+        let aside = aside(&self.path, interrupt)?;
         Ok(Staged { target: self.clone(), aside: Some(aside) })
     }
 }
@@ -73,6 +86,17 @@ pub struct Aside {
 impl Aside {
     /// Makes the file beside its place, which shows that it can be written.
     pub fn beside(path: &Path, interrupt: &Interrupt) -> Result<Aside, Problem> {
+        Aside::make(path, None, interrupt)
+    }
+
+    /// The same for a place that one process writes again and again: the file has always the same name, so that what is left
+    /// of one that was killed is not left for ever. While another process writes there it is an error.
+    pub fn always_beside(path: &Path, interrupt: &Interrupt) -> Result<Aside, Problem> {
+        let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+        Aside::make(path, name.as_deref(), interrupt)
+    }
+
+    fn make(path: &Path, name: Option<&str>, interrupt: &Interrupt) -> Result<Aside, Problem> {
         let cannot = |reason: String| Problem::new(format!("cannot write `{}`: {reason}", path.display()));
         let existing = fs::metadata(path).ok();
         if existing.as_ref().is_some_and(|existing| !existing.is_file()) {
@@ -85,7 +109,15 @@ impl Aside {
             return Err(cannot(format!("there is no folder `{}`", folder.display())));
         }
         let made = interrupt.create(|| {
-            let file = temporary(existing.map(|existing| existing.permissions())).tempfile_in(folder)?;
+            let mut builder = temporary(existing.map(|existing| existing.permissions()));
+            let prefix = name.map(|name| format!(".{name}"));
+            if let Some(prefix) = &prefix {
+                remove_left(&folder.join(format!("{prefix}{SUFFIX}")))?;
+                builder.prefix(prefix).rand_bytes(0);
+            }
+            let file = builder.tempfile_in(folder)?;
+            // It tells others that it is not left behind; where nothing can be locked, they do not come.
+            let _ = file.as_file().try_lock();
             let path = file.path().to_path_buf();
             Ok((file, path))
         });
@@ -105,8 +137,10 @@ impl Aside {
     pub fn finish(mut self) -> Result<(), Problem> {
         let Some((file, place)) = self.file.take() else { return Ok(()) };
         let path = file.path().to_path_buf();
-        let moved = self.interrupt.settle(&path, || file.persist(place).map(drop).map_err(|e| e.error));
-        moved.map_err(|error| cannot_write(&format!("`{}`", self.path.display()), &error))
+        let moved = self.interrupt.settle(&path, || file.persist(&place).map(drop).map_err(|e| e.error));
+        moved.map_err(|error| cannot_write(&format!("`{}`", self.path.display()), &error))?;
+        sync_folder(&place);
+        Ok(())
     }
 }
 
@@ -138,10 +172,33 @@ pub fn replace(path: &Path, bytes: &[u8], interrupt: &Interrupt) -> Result<(), P
     staged.finish()
 }
 
+/// Removes what a process has left that was killed, and not what one is writing.
+fn remove_left(path: &Path) -> io::Result<()> {
+    match fs::File::open(path) {
+        Ok(left) if matches!(left.try_lock(), Err(fs::TryLockError::WouldBlock)) => {
+            Err(io::ErrorKind::ResourceBusy.into())
+        }
+        Ok(_) => fs::remove_file(path),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(error),
+    }
+}
+
+/// Waits until it is on the disk which files a folder holds, where that can be asked for: the file is whole either way.
+fn sync_folder(place: &Path) {
+    let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if cfg!(unix) {
+        let _ = fs::File::open(folder).and_then(|folder| folder.sync_all());
+    }
+}
+
+/// How the names of files end that are being written.
+const SUFFIX: &str = ".tmp";
+
 /// The permissions of a file that is replaced, else those that the umask leaves.
-fn temporary(existing: Option<Permissions>) -> tempfile::Builder<'static, 'static> {
+fn temporary<'a>(existing: Option<Permissions>) -> tempfile::Builder<'a, 'static> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".rtc-").suffix(".tmp");
+    builder.prefix(".rtc-").suffix(SUFFIX);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;

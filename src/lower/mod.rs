@@ -44,6 +44,10 @@ pub struct Overrides {
     pub size: Option<[u32; 2]>,
     /// Samples a pixel, in place of the file's samples or noise.
     pub samples: Option<u32>,
+    /// A noise target, in place of the file's samples or noise. It goes before the samples here.
+    pub noise: Option<f64>,
+    /// Whether there is another limit, so that a file that gives none has as many samples as there can be.
+    pub limited: bool,
     /// Chooses the random numbers.
     pub seed: Option<u64>,
     /// In stops; an inner none is `auto`.
@@ -415,12 +419,14 @@ impl<'a> Lowering<'a> {
         let made = blocks.render.map_or(plain.fields(), |thing| thing.made);
         let samples = made.given(render::SAMPLES).map(|(samples, _)| samples as u32);
         let noise = made.given(render::NOISE);
-        self.out.places.noise = noise.map(|(_, span)| span);
+        let own = self.overrides.noise.is_none().then_some(noise).flatten();
+        self.out.places.noise = own.map(|(_, span)| span);
         self.out.places.bounces = made.given(render::BOUNCES).map(|(_, span)| span);
-        let target = match (self.overrides.samples.or(samples), noise) {
-            (Some(samples), _) => Target::Samples(samples),
-            (None, Some((noise, _))) => Target::Noise(noise),
-            (None, None) => {
+        let target = match (self.overrides.samples.or(samples), self.overrides.noise, own) {
+            (_, Some(noise), _) | (None, None, Some((noise, _))) => Target::Noise(noise),
+            (Some(samples), None, _) => Target::Samples(samples),
+            (None, None, None) if self.overrides.limited => Target::Samples(u32::MAX),
+            (None, None, None) => {
                 self.out.notes.push(format!(
                     "no samples or noise: {DEFAULT_SAMPLES} samples a pixel, as `render {{ samples: {DEFAULT_SAMPLES} }}`"
                 ));

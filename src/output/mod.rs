@@ -15,7 +15,7 @@ use crate::scene::Tonemap;
 use rayon::prelude::*;
 use std::fmt;
 
-pub use openexr::decode as decode_exr;
+pub use openexr::{decode as decode_exr, decode_words};
 
 /// The most pixels a picture in memory may have: 16384 × 8192.
 pub const MOST_PIXELS: u64 = 1 << 27;
@@ -92,8 +92,30 @@ fn share(v: f32) -> f32 {
 pub struct Channels {
     /// Further channels.
     pub planes: Vec<Plane>,
+    /// Further channels of whole numbers.
+    pub words: Vec<Words>,
     /// Further attributes, each a name and a text in ASCII.
     pub texts: Vec<(String, String)>,
+}
+
+/// A channel of 32-bit whole numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Words {
+    /// With the layer before a dot: `sums.samples`.
+    pub name: String,
+    /// A value for each pixel of the picture, row by row from the top left.
+    pub values: Vec<u32>,
+}
+
+/// Where the pixels of a picture lie: see [`Picture`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frame {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Where its top left pixel lies in the whole picture.
+    pub offset: [u32; 2],
+    /// Width and height of the whole picture.
+    pub whole: [u32; 2],
 }
 
 /// A channel of 32-bit floats.
@@ -110,8 +132,12 @@ pub struct Plane {
 pub struct Facts {
     /// The program and its version.
     pub software: String,
-    /// Samples a pixel.
+    /// Samples a pixel; where some have fewer, the most.
     pub samples: Option<u64>,
+    /// The noise, as a share of white.
+    pub noise: Option<f64>,
+    /// What it stopped at: samples, noise or time.
+    pub limit: Option<String>,
     /// What chose the random numbers.
     pub seed: Option<u64>,
     /// The scene's canonical hash in hexadecimal.
@@ -126,7 +152,16 @@ impl Facts {
     /// Nothing known but the program that writes.
     pub fn unknown() -> Facts {
         let software = format!("rtc {}", env!("CARGO_PKG_VERSION"));
-        Facts { software, samples: None, seed: None, scene: None, stops: None, tonemap: None }
+        Facts {
+            software,
+            samples: None,
+            noise: None,
+            limit: None,
+            seed: None,
+            scene: None,
+            stops: None,
+            tonemap: None,
+        }
     }
 
     /// What a picture is developed with where nothing is said: as it is, with the language's default curve.
@@ -249,14 +284,14 @@ pub fn encode(
         Format::Png => displayed::png(picture, facts.developing(), depth),
         Format::Jpeg => displayed::jpeg(picture, facts.developing()),
         Format::WebP => displayed::webp(picture, facts.developing()),
-        Format::Exr => openexr::encode(picture, facts, &Channels::default()),
+        Format::Exr => openexr::encode(picture, facts, Channels::default()),
         Format::Hdr => Ok(linear::hdr(picture, facts)),
         Format::Pfm => Ok(linear::pfm(picture)),
     }
 }
 
 /// The bytes of an EXR with more than the picture.
-pub fn encode_exr(picture: &Picture, facts: &Facts, channels: &Channels) -> Result<Vec<u8>, CannotEncode> {
+pub fn encode_exr(picture: &Picture, facts: &Facts, channels: Channels) -> Result<Vec<u8>, CannotEncode> {
     openexr::encode(picture, facts, channels)
 }
 

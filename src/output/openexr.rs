@@ -1,6 +1,9 @@
 //! OpenEXR: scene radiance in 32-bit floats, with how it came about in the attributes.
 
-use super::{CannotDecode, CannotEncode, Channels, Facts, MOST_PIXELS, Picture, finite, share, unless_whole};
+use super::{
+    CannotDecode, CannotEncode, Channels, Facts, Frame, MOST_PIXELS, Picture, Plane, Words, finite, share,
+    unless_whole,
+};
 use crate::scene::Tonemap;
 use exr::meta::MetaData;
 use exr::meta::attribute::{AttributeValue, Chromaticities, IntegerBounds, LineOrder, Text};
@@ -13,6 +16,8 @@ use std::io::Cursor;
 
 // Attributes of our own. `exposure` without a prefix would be the standard's exposure time in seconds.
 const SAMPLES: &str = "rtc.samples";
+const NOISE: &str = "rtc.noise";
+const LIMIT: &str = "rtc.limit";
 const SEED: &str = "rtc.seed";
 const SCENE: &str = "rtc.scene";
 const STOPS: &str = "rtc.exposure";
@@ -28,16 +33,17 @@ const SRGB: Chromaticities = Chromaticities {
 
 /// A file with the channels R, G, B and, where there is one, A, and whatever else there is. The display window is the whole
 /// picture, the data window what was traced of it.
-pub(super) fn encode(picture: &Picture, facts: &Facts, channels: &Channels) -> Result<Vec<u8>, CannotEncode> {
+pub(super) fn encode(picture: &Picture, facts: &Facts, channels: Channels) -> Result<Vec<u8>, CannotEncode> {
     let position = Vec2(picture.offset[0] as i32, picture.offset[1] as i32);
     let size = Vec2(picture.size[0] as usize, picture.size[1] as usize);
     let whole = Vec2(picture.whole[0] as usize, picture.whole[1] as usize);
     let mut image = ImageAttributes::new(IntegerBounds::new((0, 0), whole));
     image.chromaticities = Some(SRGB);
     let mut attributes = attributes(facts, position);
-    let texts = channels.texts.iter().filter_map(|(name, value)| Some((text(name)?, text(value)?)));
+    let Channels { planes: more, words, texts } = channels;
+    let texts = texts.iter().filter_map(|(name, value)| Some((text(name)?, text(value)?)));
     attributes.other.extend(texts.map(|(name, value)| (name, AttributeValue::Text(value))));
-    let layer = Layer::new(size, attributes, ENCODING, planes(picture, channels));
+    let layer = Layer::new(size, attributes, ENCODING, planes(picture, more, words));
     let mut file = Cursor::new(Vec::new());
     let written = Image::empty(image).with_layer(layer).write().to_buffered(&mut file);
     written.map_err(|error| CannotEncode(error.to_string()))?;
@@ -47,16 +53,19 @@ pub(super) fn encode(picture: &Picture, facts: &Facts, channels: &Channels) -> R
 }
 
 /// All channels, in the order of their names, as the format wants them.
-fn planes(picture: &Picture, channels: &Channels) -> AnyChannels<FlatSamples> {
+fn planes(picture: &Picture, more: Vec<Plane>, words: Vec<Words>) -> AnyChannels<FlatSamples> {
     let color = ["R", "G", "B"].into_iter().enumerate().map(|(channel, name)| {
         let values = picture.pixels.iter().map(|pixel| pixel[channel]).collect();
         AnyChannel::new(name, FlatSamples::F32(values))
     });
     let alpha = picture.alpha.iter().map(|alpha| AnyChannel::new("A", FlatSamples::F32(alpha.clone())));
-    let more = channels.planes.iter().filter_map(|plane| {
-        Some(AnyChannel::new(text(&plane.name)?, FlatSamples::F32(plane.values.clone())))
-    });
-    AnyChannels::sort(color.chain(alpha).chain(more).collect())
+    let more = more
+        .into_iter()
+        .filter_map(|plane| Some(AnyChannel::new(text(&plane.name)?, FlatSamples::F32(plane.values))));
+    let words = words
+        .into_iter()
+        .filter_map(|words| Some(AnyChannel::new(text(&words.name)?, FlatSamples::U32(words.values))));
+    AnyChannels::sort(color.chain(alpha).chain(more).chain(words).collect())
 }
 
 /// Lossless; lines in order, for the same bytes on any number of threads.
@@ -74,11 +83,14 @@ fn attributes(facts: &Facts, position: Vec2<i32>) -> LayerAttributes {
         (SAMPLES, facts.samples.map(|n| n.to_string())),
         (SEED, facts.seed.map(|n| n.to_string())),
         (SCENE, facts.scene.clone()),
+        (LIMIT, facts.limit.clone()),
         (TONEMAP, facts.tonemap.map(|curve| curve.word().to_string())),
     ];
     let texts = texts.into_iter().filter_map(|(name, value)| Some((name, text(&value?)?)));
     layer.other.extend(texts.map(|(name, value)| (Text::from(name), AttributeValue::Text(value))));
-    layer.other.extend(facts.stops.map(|stops| (Text::from(STOPS), AttributeValue::F64(stops))));
+    let numbers = [(STOPS, facts.stops), (NOISE, facts.noise)];
+    let numbers = numbers.into_iter().filter_map(|(name, value)| Some((Text::from(name), value?)));
+    layer.other.extend(numbers.map(|(name, value)| (name, AttributeValue::F64(value))));
     layer
 }
 
@@ -114,15 +126,7 @@ fn sort_header(file: &mut [u8]) -> Option<()> {
 /// infinite the greatest finite value.
 pub fn decode(file: &[u8]) -> Result<(Picture, Facts), CannotDecode> {
     let refuse = |error: exr::error::Error| CannotDecode(error.to_string());
-    let meta = MetaData::read_from_buffered(Cursor::new(file), false).map_err(refuse)?;
-    for header in &meta.headers {
-        let pixels = header.layer_size.0 as u64 * header.layer_size.1 as u64;
-        if pixels > MOST_PIXELS {
-            return Err(CannotDecode(format!(
-                "it has {pixels} pixels, and at most {MOST_PIXELS} are allowed"
-            )));
-        }
-    }
+    refuse_large(file)?;
     let image = read()
         .no_deep_data()
         .largest_resolution_level()
@@ -152,21 +156,72 @@ pub fn decode(file: &[u8]) -> Result<(Picture, Facts), CannotDecode> {
     Ok((picture, facts(&layer.attributes)))
 }
 
+/// The most channels that a file may have whose whole numbers are read.
+const MOST_CHANNELS: usize = 64;
+
+/// Reads the channels of whole numbers of the first layer, by name, and the attributes that are texts.
+pub fn decode_words(file: &[u8]) -> Result<(Frame, Facts, Channels), CannotDecode> {
+    let refuse = |error: exr::error::Error| CannotDecode(error.to_string());
+    let meta = refuse_large(file)?;
+    if meta.headers.iter().any(|header| header.channels.list.len() > MOST_CHANNELS) {
+        return Err(CannotDecode(format!("it has more than {MOST_CHANNELS} channels")));
+    }
+    let reader = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
+    let image = reader.all_attributes().from_buffered(Cursor::new(file)).map_err(refuse)?;
+    let (layer, display) = (image.layer_data, image.attributes.display_window);
+    let mut channels = Channels::default();
+    for AnyChannel { name, sample_data, .. } in layer.channel_data.list {
+        if let FlatSamples::U32(values) = sample_data {
+            channels.words.push(Words { name: name.to_string(), values });
+        }
+    }
+    let texts = layer.attributes.other.iter().filter_map(|(name, value)| match value {
+        AttributeValue::Text(text) => Some((name.to_string(), text.to_string())),
+        _ => None,
+    });
+    channels.texts = texts.collect();
+    channels.texts.sort();
+    let offset = layer.attributes.layer_position - display.position;
+    let frame = Frame {
+        size: [layer.size.x() as u32, layer.size.y() as u32],
+        offset: [offset.x().max(0) as u32, offset.y().max(0) as u32],
+        whole: [display.size.x() as u32, display.size.y() as u32],
+    };
+    Ok((frame, facts(&layer.attributes), channels))
+}
+
+/// Refuses what has too many pixels before any memory is taken for them.
+fn refuse_large(file: &[u8]) -> Result<MetaData, CannotDecode> {
+    let meta = MetaData::read_from_buffered(Cursor::new(file), false);
+    let meta = meta.map_err(|error| CannotDecode(error.to_string()))?;
+    for header in &meta.headers {
+        let pixels = header.layer_size.0 as u64 * header.layer_size.1 as u64;
+        if pixels > MOST_PIXELS {
+            return Err(CannotDecode(format!(
+                "it has {pixels} pixels, and at most {MOST_PIXELS} are allowed"
+            )));
+        }
+    }
+    Ok(meta)
+}
+
 fn facts(layer: &LayerAttributes) -> Facts {
     let text = |name: &str| match layer.other.get(&Text::from(name)) {
         Some(AttributeValue::Text(text)) => Some(text.to_string()),
         _ => None,
     };
-    let stops = match layer.other.get(&Text::from(STOPS)) {
-        Some(AttributeValue::F64(stops)) if stops.is_finite() => Some(*stops),
+    let number = |name: &str| match layer.other.get(&Text::from(name)) {
+        Some(AttributeValue::F64(number)) if number.is_finite() => Some(*number),
         _ => None,
     };
     Facts {
         software: layer.software_name.as_ref().map_or_else(String::new, Text::to_string),
         samples: text(SAMPLES).and_then(|n| n.parse().ok()),
         seed: text(SEED).and_then(|n| n.parse().ok()),
+        noise: number(NOISE),
+        limit: text(LIMIT),
         scene: text(SCENE),
-        stops,
+        stops: number(STOPS),
         tonemap: text(TONEMAP).and_then(|word| Tonemap::from_word(&word)),
     }
 }

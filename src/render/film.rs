@@ -18,6 +18,12 @@ const MOST_FIXED: f64 = (1u64 << 42) as f64;
 /// Units of the fixed point in a filter weight of 1: `MOST_SAMPLES` weights of less than 8 fit an `i64`.
 const WEIGHT_SCALE: f64 = (1u64 << 40) as f64;
 
+/// Greatest magnitude of a filter weight in these units.
+const MOST_WEIGHT: u64 = 8 << 40;
+
+/// Numbers of 32 bits that hold the sums of a pixel: see [`Pixel::words`].
+pub const WORDS: usize = 15;
+
 /// A rectangle of pixels in the full picture, (0, 0) at its top left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
@@ -126,8 +132,40 @@ impl Pixel {
         if self.samples == 0 { Rgb::ZERO } else { Rgb::new(r, g, b) / (scale * f64::from(self.samples)) }
     }
 
-    pub(super) fn samples(&self) -> u32 {
+    /// How many samples it holds.
+    pub fn samples(&self) -> u32 {
         self.samples
+    }
+
+    /// The sums as they are, each in words of 32 bits, the lowest first: red, green and blue in two each, the squares of
+    /// luminance in four, the weights of what is covered and of what is open in two each, and the number of samples.
+    pub fn words(&self) -> [u32; WORDS] {
+        let [r, g, b] = self.sum.map(|v| halves(v as u64));
+        let [covered, open] = [self.covered, self.open].map(|v| halves(v as u64));
+        let squares = [self.luminance_squares as u64, (self.luminance_squares >> 64) as u64].map(halves);
+        let pairs = [r, g, b, squares[0], squares[1], covered, open];
+        std::array::from_fn(|i| if i + 1 == WORDS { self.samples } else { pairs[i / 2][i % 2] })
+    }
+
+    /// The pixel with these sums; none where so many samples cannot have them.
+    pub fn from_words(words: [u32; WORDS]) -> Option<Pixel> {
+        let pair = |i: usize| u64::from(words[i]) | u64::from(words[i + 1]) << 32;
+        let pixel = Pixel {
+            sum: [0, 2, 4].map(|i| pair(i) as i64),
+            luminance_squares: u128::from(pair(6)) | u128::from(pair(8)) << 64,
+            covered: pair(10) as i64,
+            open: pair(12) as i64,
+            samples: words[WORDS - 1],
+        };
+        if pixel.samples > MOST_SAMPLES {
+            return None;
+        }
+        let n = u64::from(pixel.samples);
+        let most = MOST_FIXED as u64;
+        let sums = pixel.sum.iter().all(|sum| sum.unsigned_abs() <= n * most);
+        let squares = pixel.luminance_squares <= u128::from(n) * u128::from(most) * u128::from(most);
+        let weights = [pixel.covered, pixel.open].iter().all(|sum| sum.unsigned_abs() <= n * MOST_WEIGHT);
+        (sums && squares && weights).then_some(pixel)
     }
 
     pub(super) fn error(&self, scale: f64) -> f64 {
@@ -139,6 +177,11 @@ impl Pixel {
         let variance = (self.luminance_squares as f64 / n - mean * mean).max(0.0);
         (variance / (n - 1.0)).sqrt() / scale
     }
+}
+
+/// The lower and the upper half of a number.
+fn halves(v: u64) -> [u32; 2] {
+    [v as u32, (v >> 32) as u32]
 }
 
 /// A radiance in units of 1/scale; what is too large is cut.
@@ -166,6 +209,18 @@ impl Film {
     /// A film without samples. `scale` is the number of fixed-point units in radiance 1, a power of two.
     pub fn new(window: Window, scale: f64) -> Film {
         Film { window, scale, pixels: vec![Pixel::default(); window.pixels()] }
+    }
+
+    /// A film with the samples of these pixels, row by row; none where they are not as many as the window has, or the scale
+    /// is none.
+    pub fn with_pixels(window: Window, scale: f64, pixels: Vec<Pixel>) -> Option<Film> {
+        let is_scale = scale.is_normal() && scale > 0.0 && (1.0 / scale).is_normal();
+        (is_scale && pixels.len() == window.pixels()).then_some(Film { window, scale, pixels })
+    }
+
+    /// Its pixels, row by row.
+    pub fn pixels(&self) -> &[Pixel] {
+        &self.pixels
     }
 
     /// The part of the full picture that it covers.
@@ -213,13 +268,17 @@ impl Film {
     /// The least error that all but one in a hundred pixels keep, as shown on a display: half the span between
     /// the mean less and plus its standard error, in the channel where it is greatest, as a share of white.
     pub fn noise(&self, stops: f64, tonemap: Tonemap) -> f64 {
-        let mut errors: Vec<f64> =
-            self.pixels.par_iter().map(|pixel| self.shown_error(pixel, stops, tonemap)).collect();
+        let mut errors = self.shown_errors(stops, tonemap);
         if errors.is_empty() {
             return 0.0;
         }
-        let rank = (errors.len() * 99).div_ceil(100) - 1;
+        let rank = errors.len() - most_failing(errors.len()) - 1;
         *errors.select_nth_unstable_by(rank, f64::total_cmp).1
+    }
+
+    /// The standard errors of the pixels as shown, row by row: see [`Film::noise`].
+    pub(super) fn shown_errors(&self, stops: f64, tonemap: Tonemap) -> Vec<f64> {
+        self.pixels.par_iter().map(|pixel| self.shown_error(pixel, stops, tonemap)).collect()
     }
 
     fn shown_error(&self, pixel: &Pixel, stops: f64, tonemap: Tonemap) -> f64 {
@@ -244,6 +303,11 @@ impl Film {
             }
         }
     }
+}
+
+/// How many of so many pixels may be noisier than the noise of their picture: one in a hundred.
+pub(super) fn most_failing(pixels: usize) -> usize {
+    pixels / 100
 }
 
 /// The scale for a picture of this typical radiance in which the brightest thing glows with `peak`: a million

@@ -23,6 +23,8 @@
 //! | [`film`] | exact sums |
 //! | `prepass` | exposure and the film's scale |
 //! | [`shares`] | how much of the light is of which lamp |
+//! | [`halt`] | when there are enough samples, and where too few |
+//! | [`making`] | a picture in the making, and going on with it |
 //! | [`control`] | cancelling and progress |
 //! | `stray` | rays without pictures, to measure |
 //!
@@ -43,10 +45,12 @@ pub mod feedback;
 pub mod film;
 pub mod first;
 mod functions;
+pub mod halt;
 mod jobs;
 pub mod lanes;
 pub mod level;
 pub mod light;
+pub mod making;
 mod materials;
 pub mod media;
 pub mod observer;
@@ -68,15 +72,16 @@ mod warp;
 use crate::asset::Mesh;
 use crate::color::Rgb;
 use crate::math::{DVec3, exp2, ln};
-use crate::scene::{Light, Material, Paint, PrimitiveId, Scene, Shape, Target, Tonemap};
+use crate::scene::{Light, Material, Paint, PrimitiveId, Scene, Shape, Tonemap};
 use apart::Sampled;
 use bsdf::Bsdfs;
 use camera::Eye;
 use caustic::Caustics;
 pub use control::{Cancelled, Control, Progress};
 use exact::SurfacePoint;
+use film::Pixel;
 pub use film::{Film, Window};
-use film::{MOST_SAMPLES, Pixel};
+use halt::Limit;
 use jobs::{Glimpse, Single, Tile};
 use lanes::{Lanes, Mask, One, Word};
 pub use level::Level;
@@ -128,12 +133,15 @@ pub struct Structure {
 pub struct Rendered {
     /// The sums.
     pub film: Film,
-    /// Samples of each pixel.
+    /// The most samples of a pixel.
     pub samples: u32,
-    /// The noise reached, as a ratio of white: see [`Film::noise`]. 0 where the target is a number of samples, and
-    /// nobody asked.
+    /// How many pixels have on average.
+    pub mean_samples: f64,
+    /// The noise reached, as a ratio of white: see [`Film::noise`].
     pub noise: f64,
-    /// Whether the target was met: false only where a noise target was not, with [`MOST_NOISE_SAMPLES`].
+    /// What it stopped at.
+    pub limit: Limit,
+    /// Whether there is as little noise as was wanted.
     pub target_met: bool,
 }
 
@@ -172,11 +180,6 @@ pub struct Shown {
     /// The curve from scene to display.
     pub tonemap: Tonemap,
 }
-
-/// Samples a pixel at which a noise target is first judged.
-pub const FIRST_NOISE_SAMPLES: u32 = 16;
-/// Samples a pixel at which a noise target is given up.
-pub const MOST_NOISE_SAMPLES: u32 = 1 << 16;
 
 /// Pixels along the side of a tile.
 const TILE: u32 = 16;
@@ -274,43 +277,6 @@ impl<'s> Tracer<'s> {
         prepass::prepass(self)
     }
 
-    /// Traces a window of the picture on the current rayon pool.
-    ///
-    /// A noise target is judged on the window: samples are doubled until 99 of 100 of its pixels keep it, so a
-    /// crop may stop at another number of samples than the whole.
-    ///
-    /// # Errors
-    ///
-    /// If the control cancels.
-    pub fn render(
-        &self,
-        window: Window,
-        target: Target,
-        prepass: &Prepass,
-        shown: Shown,
-        control: &Control,
-    ) -> Result<Rendered, Cancelled> {
-        let mut film = Film::new(window, prepass.scale);
-        let (mut samples, most, wanted) = match target {
-            Target::Samples(n) => (n.clamp(1, MOST_SAMPLES), n, 1.0),
-            Target::Noise(noise) => (FIRST_NOISE_SAMPLES, MOST_NOISE_SAMPLES, noise),
-        };
-        let mut done = 0;
-        loop {
-            self.add_samples(&mut film, done..samples, control)?;
-            let noise = match target {
-                Target::Samples(_) => 0.0,
-                Target::Noise(_) => film.noise(shown.stops, shown.tonemap),
-            };
-            let target_met = noise <= wanted;
-            if target_met || samples >= most {
-                return Ok(Rendered { film, samples, noise, target_met });
-            }
-            done = samples;
-            samples *= 2;
-        }
-    }
-
     /// Adds a range of samples to every pixel of a film.
     ///
     /// # Errors
@@ -337,10 +303,21 @@ impl<'s> Tracer<'s> {
         samples: std::ops::Range<u32>,
         control: &Control,
     ) -> Result<(), Cancelled> {
-        let tiles: Vec<Window> = windows.iter().flat_map(|window| window.tiles(TILE)).collect();
-        let scale = film.scale();
         let pixels: u64 = windows.iter().map(|window| window.pixels() as u64).sum();
         control.plan(pixels * u64::from(samples.end - samples.start));
+        self.trace_step(film, windows, samples, control)
+    }
+
+    /// The same for paths that have been planned.
+    fn trace_step(
+        &self,
+        film: &mut Film,
+        windows: &[Window],
+        samples: std::ops::Range<u32>,
+        control: &Control,
+    ) -> Result<(), Cancelled> {
+        let tiles: Vec<Window> = windows.iter().flat_map(|window| window.tiles(TILE)).collect();
+        let scale = film.scale();
         let view = View::new(&self.eye, self.scene.trace.seed);
         for start in samples.clone().step_by(PASS as usize) {
             let pass = start..samples.end.min(start + PASS);

@@ -11,6 +11,7 @@
 //!   picture's radiance changes it. What only develops the film is in [`Develop`], outside the hash.
 
 pub mod boxes;
+pub mod identity;
 pub mod nesting;
 pub mod shape;
 pub mod texture;
@@ -247,25 +248,10 @@ pub struct Develop {
 impl Scene {
     /// The canonical hash of everything that radiance depends on, but for the number of samples.
     pub fn hash(&self) -> blake3::Hash {
-        struct Sink(blake3::Hasher);
-        impl postcard::ser_flavors::Flavor for Sink {
-            type Output = blake3::Hash;
-            fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
-                self.try_extend(&[byte])
-            }
-            fn try_extend(&mut self, bytes: &[u8]) -> postcard::Result<()> {
-                self.0.update(bytes);
-                Ok(())
-            }
-            fn finalize(self) -> postcard::Result<blake3::Hash> {
-                Ok(self.0.finalize())
-            }
-        }
         let any = Trace { target: Target::Samples(0), ..self.trace };
         let painted = (&self.textures, &self.images, &self.frames);
         let parts = (&self.primitives, &self.materials, painted, &self.lights, &self.camera, any);
-        postcard::serialize_with_flavor(&parts, Sink(blake3::Hasher::new()))
-            .expect("the sink takes everything, and the scene has only sized parts")
+        digest(&parts)
     }
 
     /// The map from the world to the space of a primitive's texture.
@@ -278,6 +264,26 @@ impl Scene {
     pub fn material(&self, primitive: &Primitive) -> &Material {
         &self.materials[primitive.material.0 as usize]
     }
+}
+
+/// The canonical hash of a part of a scene.
+fn digest(part: &impl Serialize) -> blake3::Hash {
+    struct Sink(blake3::Hasher);
+    impl postcard::ser_flavors::Flavor for Sink {
+        type Output = blake3::Hash;
+        fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
+            self.try_extend(&[byte])
+        }
+        fn try_extend(&mut self, bytes: &[u8]) -> postcard::Result<()> {
+            self.0.update(bytes);
+            Ok(())
+        }
+        fn finalize(self) -> postcard::Result<blake3::Hash> {
+            Ok(self.0.finalize())
+        }
+    }
+    postcard::serialize_with_flavor(part, Sink(blake3::Hasher::new()))
+        .expect("the sink takes everything, and the scene has only sized parts")
 }
 
 impl Material {

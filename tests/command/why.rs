@@ -224,7 +224,7 @@ render { size: (16, 12), samples: 4, bounces: 2 }
     let shown: String = told
         .stderr
         .lines()
-        .filter(|line| !line.contains("samples in"))
+        .filter(|line| !line.contains(" samples (noise "))
         .fold(String::new(), |text, line| text + line + "\n");
     insta::assert_snapshot!("feedback", shown);
     assert_eq!(desk.run("build much.rt").stderr.matches("W07").count(), 0);

@@ -1,5 +1,5 @@
-//! What needs more than Rust: `cargo xtask e2e` runs the command on a real terminal, on a full disk, within
-//! little memory, against another renderer, in a browser, and as the README says.
+//! What needs more than Rust: `cargo xtask e2e` runs the command on a real terminal, on a full disk, killed again and
+//! again, on a farm, within little memory, against another renderer, in a browser, and as the README says.
 //!
 //! Nothing is skipped quietly. A tool that is missing fails the step that needs it, with its name.
 
@@ -27,6 +27,8 @@ type Step = fn(&Place) -> Outcome;
 const STEPS: &[(&str, Step)] = &[
     ("terminal", terminal),
     ("full-disk", full_disk),
+    ("resume", resume),
+    ("farm", farm),
     ("memory", memory),
     ("licences", licences),
     ("reference", reference::agreement),
@@ -63,6 +65,8 @@ cargo xtask e2e [STEP…]
 
   terminal   progress on a pseudo-terminal, and Ctrl-C within 100 ms
   full-disk  a disk that fills up while a picture is written
+  resume     a build that is killed 200 times and goes on, to the same bytes; signals, and a full disk (minutes)
+  farm       four workers of a real Slurm, one of them lost midway (slurmctld, slurmd and munge, of Debian; as root)
   memory     hostile sources within 2 GiB of address space
   licences   every dependency's licence is one that deny.toml allows
   reference  the room against a converged picture of another renderer (minutes)
@@ -211,6 +215,15 @@ fn terminal(place: &Place) -> Outcome {
 
 fn full_disk(place: &Place) -> Outcome {
     script(place, "bash", "full-disk.sh")
+}
+
+fn resume(place: &Place) -> Outcome {
+    script(place, "python3", "resume.py")
+}
+
+fn farm(place: &Place) -> Outcome {
+    tools::slurm()?;
+    script(place, "bash", "farm.sh")
 }
 
 fn memory(place: &Place) -> Outcome {

@@ -36,6 +36,19 @@ pub fn playwright(folder: &Path) -> Outcome {
     run(Command::new("npm").args(install).arg(folder).arg("playwright-core@1.65"))
 }
 
+/// Has Slurm and what its parts know each other by at hand.
+pub fn slurm() -> Outcome {
+    // They know no `--version`, and are not on everyone's path.
+    let is_there =
+        |program: &str| ["/usr/sbin", "/usr/bin"].iter().any(|bin| Path::new(bin).join(program).exists());
+    for (program, package) in
+        [("munged", "munge"), ("slurmctld", "slurmctld"), ("slurmd", "slurmd"), ("sbatch", "slurm-client")]
+    {
+        at_hand(program, package, || is_there(program))?;
+    }
+    Ok(())
+}
+
 /// Links programs for ARM.
 pub const ARM_LINKER: &str = "aarch64-linux-gnu-gcc";
 

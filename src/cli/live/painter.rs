@@ -13,11 +13,10 @@ use rayon::prelude::*;
 use rt_lang::change::{self, Change, Paths};
 use rt_lang::color::Rgb;
 use rt_lang::output::Facts;
+use rt_lang::render::halt::{self, FIRST_NOISE_SAMPLES, Limit, MOST_NOISE_SAMPLES};
 use rt_lang::render::light::Source;
 use rt_lang::render::shares::Shares;
-use rt_lang::render::{
-    Control, FIRST_NOISE_SAMPLES, Film, MOST_NOISE_SAMPLES, Prepass, Structure, Tracer, Window,
-};
+use rt_lang::render::{Control, Film, Prepass, Structure, Tracer, Window};
 use rt_lang::scene::{Background, Scene, Target};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -102,6 +101,8 @@ struct Canvas {
     noise: Option<f64>,
     /// How many samples it went for last.
     aim: u32,
+    /// What it stopped at, once it did.
+    limit: Option<Limit>,
     /// Whether it is done, and was written as it is developed.
     done: bool,
 }
@@ -193,7 +194,8 @@ impl<'a> Painting<'a> {
         };
         if !unchanged {
             canvas.aim = self.first_aim();
-            canvas.done = false;
+            canvas.work.refine_all();
+            (canvas.limit, canvas.done) = (None, false);
         }
         within.then_some(canvas)
     }
@@ -269,8 +271,9 @@ impl<'a> Painting<'a> {
         while !desk.is_news() {
             let first = desk.first();
             let Some(step) = canvas.work.next(canvas.aim, first) else {
-                if let Some(next) = self.next_aim(&canvas) {
-                    canvas.aim = next;
+                if let Some(limit) = self.go_on(&mut canvas) {
+                    canvas.limit = Some(limit);
+                } else {
                     continue;
                 }
                 self.finish(tracer, &mut canvas);
@@ -312,7 +315,17 @@ impl<'a> Painting<'a> {
         }
         let film = Film::new(Window::whole(size), prepass.scale);
         let (work, time) = (Work::new(size), start.elapsed());
-        Some(Canvas { film, prepass, work, look, time, noise: None, aim: self.first_aim(), done: false })
+        Some(Canvas {
+            film,
+            prepass,
+            work,
+            look,
+            time,
+            noise: None,
+            aim: self.first_aim(),
+            limit: None,
+            done: false,
+        })
     }
 
     /// Looks at one pixel of so many across and down. None if a new job comes before it is done.
@@ -354,15 +367,20 @@ impl<'a> Painting<'a> {
         }
     }
 
-    /// How many to go for when those are there; none where the picture is done.
-    fn next_aim(&self, canvas: &Canvas) -> Option<u32> {
-        match self.scene.trace.target {
-            Target::Samples(_) => None,
-            Target::Noise(wanted) => {
-                let more = canvas.aim < MOST_NOISE_SAMPLES && self.noise(canvas) > wanted;
-                more.then_some(canvas.aim * 2)
-            }
+    /// Aims for more when the samples there were to be are there, as `rtc build` does; or says at what the picture stops.
+    fn go_on(&self, canvas: &mut Canvas) -> Option<Limit> {
+        let Target::Noise(wanted) = self.scene.trace.target else { return Some(Limit::Samples) };
+        let Shown { stops, tonemap } = self.shown(&canvas.prepass);
+        let noisy = halt::noisy(&canvas.film, rt_lang::render::Shown { stops, tonemap }, wanted);
+        if !noisy.contains(&true) {
+            return Some(Limit::Noise);
         }
+        if canvas.aim >= MOST_NOISE_SAMPLES {
+            return Some(Limit::Samples);
+        }
+        canvas.work.refine(canvas.film.window().tiles(halt::BLOCK), &noisy);
+        canvas.aim *= 2;
+        None
     }
 
     fn noise(&self, canvas: &Canvas) -> f64 {
@@ -403,7 +421,12 @@ impl<'a> Painting<'a> {
             canvas.noise = Some(self.noise(canvas));
         }
         let shown = self.shown(&canvas.prepass);
-        let frame = self.frame(pixels(canvas, self.scene.trace.size), 1, samples, shown, false);
+        let mut frame = self.frame(pixels(canvas, self.scene.trace.size), 1, samples, shown, false);
+        if let (Some(limit), Some(Frame { facts, .. })) = (canvas.limit, Arc::get_mut(&mut frame)) {
+            // Where it stops, some pixels may have more samples than others.
+            facts.samples = Some(u64::from(samples[1]));
+            (facts.noise, facts.limit) = (canvas.noise, Some(limit.word().into()));
+        }
         if samples[0] >= ENOUGH.min(canvas.aim) {
             self.mixing = false;
         }

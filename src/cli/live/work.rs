@@ -18,6 +18,8 @@ const FIRST: f64 = 250_000.0;
 #[derive(Clone, Debug)]
 pub struct Work {
     blocks: Vec<(Window, u32)>,
+    /// Those that have enough samples, if not all are to have the same.
+    behind: Vec<bool>,
     /// Samples a second, once that is known.
     rate: Option<f64>,
 }
@@ -35,7 +37,23 @@ pub struct Step {
 impl Work {
     /// All that is to be done of a picture.
     pub fn new(size: [u32; 2]) -> Work {
-        Work { blocks: Window::whole(size).tiles(BLOCK).map(|window| (window, 0)).collect(), rate: None }
+        let blocks: Vec<_> = Window::whole(size).tiles(BLOCK).map(|window| (window, 0)).collect();
+        Work { behind: vec![false; blocks.len()], blocks, rate: None }
+    }
+
+    /// Only some of the picture goes on, once every pixel that was to go on has its samples: these windows, which tile it,
+    /// and whether they do.
+    pub fn refine(&mut self, windows: impl Iterator<Item = Window>, goes_on: &[bool]) {
+        if self.blocks.len() != goes_on.len() {
+            let [samples, _] = self.samples();
+            self.blocks = windows.map(|window| (window, samples)).collect();
+        }
+        self.behind = goes_on.iter().map(|goes_on| !goes_on).collect();
+    }
+
+    /// All of the picture goes on.
+    pub fn refine_all(&mut self) {
+        self.behind.fill(false);
     }
 
     /// The least and the most samples of a pixel.
@@ -48,7 +66,7 @@ impl Work {
     pub fn next(&self, target: u32, first: Option<Window>) -> Option<Step> {
         let wanted = |window: &Window| first.is_some_and(|first| overlap(&first, window));
         let open = |ahead: bool| {
-            let blocks = self.blocks.iter().enumerate();
+            let blocks = self.blocks.iter().enumerate().filter(|(index, _)| !self.behind[*index]);
             blocks.filter(move |(_, (window, samples))| *samples < target && wanted(window) == ahead)
         };
         let ahead = open(true).next().is_some();
@@ -81,8 +99,12 @@ impl Work {
 
     /// The samples that all pixels have that have a part of a level: 0, 1, 2, 4, … up to the target.
     pub fn level(&self, target: u32) -> u32 {
-        let [least, _] = self.samples();
+        let least = self.going_on().map(|(_, samples)| *samples).min().unwrap_or(target);
         if least >= target || least == 0 { least.min(target) } else { 1 << least.ilog2() }
+    }
+
+    fn going_on(&self) -> impl Iterator<Item = &(Window, u32)> {
+        self.blocks.iter().zip(&self.behind).filter(|(_, behind)| !**behind).map(|(block, _)| block)
     }
 
     /// How long it will take to a target, if that can be told.
@@ -90,7 +112,7 @@ impl Work {
         let missing = |(window, samples): &(Window, u32)| {
             window.pixels() as f64 * f64::from(target.saturating_sub(*samples))
         };
-        let missing: f64 = self.blocks.iter().map(missing).sum();
+        let missing: f64 = self.going_on().map(missing).sum();
         self.rate.map(|rate| Duration::from_secs_f64((missing / rate.max(1.0)).min(1e9)))
     }
 }
@@ -144,6 +166,25 @@ mod tests {
         let (steps, _) = all_steps([64, 64], 100, None);
         let samples: Vec<_> = steps.iter().map(|step| step.samples.clone()).collect();
         assert_eq!(samples, [0..1, 1..2, 2..4, 4..8, 8..16, 16..32, 32..64, 64..100]);
+    }
+
+    #[test]
+    fn what_has_enough_samples_stays_behind() {
+        let mut work = Work::new([64, 64]);
+        while let Some(step) = work.next(16, None) {
+            work.done(&step, Duration::from_millis(10));
+        }
+        let tiles = || Window::whole([64, 64]).tiles(32);
+        work.refine(tiles(), &[false, true, false, false]);
+        let step = work.next(32, None).unwrap();
+        assert_eq!(step.windows, [Window { x: 32, y: 0, width: 32, height: 32 }]);
+        work.done(&step, Duration::from_millis(10));
+        assert_eq!((work.samples(), work.level(32), work.next(32, None)), ([16, 32], 32, None));
+        // What was left behind catches up.
+        work.refine(tiles(), &[true, false, false, false]);
+        assert_eq!(work.next(64, None).unwrap().samples, 16..32);
+        work.refine_all();
+        assert_eq!(work.next(64, None).unwrap().windows.len(), 3);
     }
 
     #[test]

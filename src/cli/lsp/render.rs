@@ -13,6 +13,7 @@ use rt_lang::lower::Overrides;
 use rt_lang::render::Control;
 use rt_lang::source::Sources;
 use serde_json::{Value, json};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -36,7 +37,7 @@ pub fn render(order: &Order) -> Answer<Value> {
         1 => Failure::plain("the scene has an error"),
         errors => Failure::plain(format!("the scene has {errors} errors")),
     })?;
-    let control = Control::new();
+    let control = Arc::new(Control::new());
     let name = target.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let made = beside(order, &control, &name, || build::make(from, &target, &control, interrupt));
     match made {

@@ -133,7 +133,7 @@ fn noise_is_met_or_told() {
     let window = Window::whole(scene.trace.size);
     let rough = render(&scene, window, Target::Noise(0.2));
     assert!(
-        rough.target_met && rough.noise <= 0.2 && rough.samples >= FIRST_NOISE_SAMPLES,
+        rough.target_met && rough.noise <= 0.2 && rough.samples >= halt::FIRST_NOISE_SAMPLES,
         "{}",
         rough.noise
     );

@@ -18,13 +18,14 @@ mod skies;
 mod solids;
 mod textures;
 
+use super::film::MOST_SAMPLES;
 use super::*;
 use crate::color::luminance;
 use crate::math::{DMat3, DVec2, DVec3, PI, pow};
 use crate::scene::shape::{Form, Placed, Quadric};
 use crate::scene::{
     Background, Camera, Develop, Filter, Light, MaterialId, OriginId, Primitive, PrimitiveId, Projection,
-    Shape, Trace,
+    Shape, Target, Trace,
 };
 use std::sync::Arc;
 

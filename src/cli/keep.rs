@@ -1,0 +1,148 @@
+//! Keeps the samples of a picture in the making, and goes on from them.
+
+use super::args::{Every, Keeping, Resume};
+use super::interrupt::Interrupt;
+use super::target::{Aside, Target};
+use super::terminal::Terminal;
+use super::{Problem, input};
+use rt_lang::output::{Facts, MOST_PIXELS};
+use rt_lang::render::making::Making;
+use rt_lang::saved::{CHANNELS, Saved, Subject};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// The largest file of samples that is read: the most pixels, uncompressed, and a little more.
+pub const LARGEST: u64 = MOST_PIXELS * 4 * (CHANNELS.len() as u64 + 5);
+
+/// Where the samples of a picture are kept, and where they come from.
+pub struct Places {
+    /// Where they are kept.
+    to: PathBuf,
+    /// Where they come from, and whether there must be some.
+    from: Option<(PathBuf, bool)>,
+}
+
+/// The places that flags name, for a picture that goes to these targets; none where nothing is to be kept.
+pub fn places(arguments: &Keeping, targets: &[Target]) -> Result<Option<Places>, Problem> {
+    if !arguments.keeps() {
+        return Ok(None);
+    }
+    let named = arguments.checkpoint.clone().flatten();
+    let to = match (named, &arguments.resume) {
+        (Some(named), _) => named,
+        (None, Some(Resume::From(file))) => file.clone(),
+        (None, _) => beside(targets)?,
+    };
+    if targets.iter().any(|target| target.path == to) {
+        let problem =
+            Problem::new(format!("`{}` would be both the picture and its checkpoint", to.display()));
+        return Err(problem.help("name another file: `--checkpoint=FILE`"));
+    }
+    let from = match &arguments.resume {
+        Some(Resume::Never) => None,
+        Some(Resume::From(file)) => Some((file.clone(), true)),
+        Some(Resume::Auto) | None => Some((to.clone(), false)),
+    };
+    Ok(Some(Places { to, from }))
+}
+
+fn beside(targets: &[Target]) -> Result<PathBuf, Problem> {
+    let file = targets.iter().find(|target| !input::is_standard(&target.path));
+    let Some(file) = file else {
+        let problem = Problem::new("a picture on standard output has no name to put its checkpoint beside");
+        return Err(problem.help("name a file: `--checkpoint=FILE`"));
+    };
+    let mut name = file.path.clone().into_os_string();
+    name.push(".checkpoint");
+    Ok(name.into())
+}
+
+/// Keeps samples every now and then.
+pub struct Keeper<'a> {
+    places: Places,
+    every: Every,
+    subject: &'a Subject,
+    /// How the picture comes about, as far as that is known before.
+    facts: &'a Facts,
+    interrupt: &'a Interrupt,
+    terminal: Terminal,
+    /// When they were kept last, and how many samples a pixel those were.
+    last: (Instant, f64),
+    /// Whether it was said that they cannot be kept.
+    complained: bool,
+}
+
+impl<'a> Keeper<'a> {
+    /// One that keeps what depends on this.
+    pub fn new(
+        places: Places,
+        every: Every,
+        (subject, facts): (&'a Subject, &'a Facts),
+        interrupt: &'a Interrupt,
+        terminal: Terminal,
+    ) -> Keeper<'a> {
+        let last = (Instant::now(), 0.0);
+        Keeper { places, every, subject, facts, interrupt, terminal, last, complained: false }
+    }
+
+    /// The picture to go on with; none where there is nothing to go on from. What differs is an error, and so is a file that
+    /// is damaged, for nobody should lose work by going on without it; and a place where nothing can be kept.
+    pub fn resume(&mut self) -> Result<Option<Making>, Problem> {
+        drop(Aside::always_beside(&self.places.to, self.interrupt)?);
+        let Some((path, must_be)) = &self.places.from else { return Ok(None) };
+        if !must_be && !path.exists() {
+            return Ok(None);
+        }
+        let bytes = input::read_bytes(path, LARGEST)?;
+        let cannot = |why: String| {
+            let problem = Problem::new(format!("cannot go on from `{}`: {why}", path.display()));
+            problem.help("`--resume=never` begins afresh, `--checkpoint=FILE` keeps the samples elsewhere")
+        };
+        let saved = Saved::decode(&bytes).map_err(|why| cannot(format!("it {why}")))?;
+        if let Some(why) = self.subject.refuses(&saved.subject) {
+            return Err(cannot(why));
+        }
+        self.last.1 = saved.making.mean_samples();
+        Ok(Some(saved.making))
+    }
+
+    /// Keeps the samples if it is time, or if that was asked for.
+    pub fn consider(&mut self, making: &Making) {
+        let due = match self.every {
+            Every::Time(time) => self.last.0.elapsed() >= time,
+            Every::Samples(samples) => making.mean_samples() - self.last.1 >= f64::from(samples),
+        };
+        // What was asked for is done, whether it was due or not.
+        if self.interrupt.is_requested() || due {
+            self.keep(making);
+        }
+    }
+
+    /// Keeps the samples. Where that fails, what was kept before stays, and the picture goes on.
+    pub fn keep(&mut self, making: &Making) {
+        let kept = self.write(making);
+        self.last = (Instant::now(), making.mean_samples());
+        if let Err(problem) = kept
+            && !self.complained
+        {
+            self.terminal.problem(&problem.help("the samples are not kept; the picture goes on"));
+            self.complained = true;
+        }
+    }
+
+    fn write(&self, making: &Making) -> Result<(), Problem> {
+        let to = &self.places.to;
+        let [_, samples] = making.samples();
+        let facts = Facts { samples: Some(u64::from(samples)), ..self.facts.clone() };
+        let bytes = self.subject.encode(making, &facts);
+        let bytes = bytes.map_err(|why| Problem::new(format!("cannot write `{}`: {why}", to.display())))?;
+        write(to, &bytes, self.interrupt)
+    }
+}
+
+/// Replaces a file by another that is whole.
+fn write(path: &Path, bytes: &[u8], interrupt: &Interrupt) -> Result<(), Problem> {
+    let mut aside = Aside::always_beside(path, interrupt)?;
+    aside.write(bytes)?;
+    aside.finish()
+}

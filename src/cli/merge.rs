@@ -1,0 +1,77 @@
+//! `rtc merge`: shares of a picture to the picture.
+
+use super::args::Merge;
+use super::interrupt::Interrupt;
+use super::keep::LARGEST;
+use super::target::Staged;
+use super::terminal::Terminal;
+use super::{Exit, Problem, build, input};
+use rt_lang::output::{Channels, Facts};
+use rt_lang::render::halt::Limit;
+use rt_lang::saved::{self, Merging, Saved};
+use std::path::Path;
+
+/// Puts the shares together, one after the other, so that there are never more than two of them in memory.
+pub fn run(arguments: &Merge, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
+    let targets = build::targets(&arguments.outputs)?;
+    build::refuse_inputs_as_outputs(&arguments.parts, &build::paths(&targets))?;
+    build::refuse_idle_depth(arguments.bits, &targets)?;
+    let mut merging: Option<Merging> = None;
+    for path in &arguments.parts {
+        let added = add(merging.as_mut(), path);
+        match added {
+            Ok(None) => {}
+            Ok(first) => merging = first,
+            Err(problem) if arguments.partial => terminal.problem(&problem.help("it is left out")),
+            Err(problem) => return Err(problem),
+        }
+    }
+    let merging = merging.ok_or_else(|| Problem::new("there is no share to begin with"))?;
+    let missing = merging.missing();
+    if !missing.is_empty() && !arguments.partial {
+        return Err(Problem::new(missing_words(&missing, merging.share().of))
+            .help("make them with `--shard I/N`, or look at what there is with `--partial`"));
+    }
+    let staged: Result<Vec<Staged>, Problem> = targets.iter().map(|target| target.stage(interrupt)).collect();
+    let (film, identity) = (merging.film(), &merging.subject().identity);
+    let samples = film.pixels().first().map_or(0, |pixel| pixel.samples());
+    let facts = Facts { limit: Some(Limit::Samples.word().into()), ..merging.facts().clone() };
+    let facts = saved::judged(facts, film, [samples; 2]);
+    let picture = saved::picture(film, identity);
+    build::write(&picture, &facts, &Channels::default(), arguments.bits, staged?)?;
+    if !arguments.quiet {
+        if !missing.is_empty() {
+            terminal.line(&missing_words(&missing, merging.share().of));
+        }
+        let [width, height] = picture.size;
+        let noise = facts.noise.map_or(String::new(), |noise| format!(" (noise {:.2} %)", noise * 100.0));
+        let shares = merging.share().of as usize - missing.len();
+        let names = build::names(&targets);
+        terminal.line(&format!("{names}: {width}×{height}, {samples} samples{noise} of {shares} shares"));
+    }
+    Ok(Exit::Done)
+}
+
+/// Adds the share of a file to those before it, or begins with it.
+fn add(merging: Option<&mut Merging>, path: &Path) -> Result<Option<Merging>, Problem> {
+    let name = path.display().to_string();
+    let bytes = input::read_bytes(path, LARGEST)?;
+    let refuse = |why: saved::Refused| Problem::new(format!("`{name}` {why}"));
+    let saved = Saved::decode(&bytes).map_err(refuse)?;
+    match merging {
+        Some(merging) => merging.add(&name, &saved).map(|()| None).map_err(refuse),
+        None => Merging::new(&name, saved).map(Some).map_err(refuse),
+    }
+}
+
+/// Names the first few of them.
+fn missing_words(missing: &[u32], of: u32) -> String {
+    const MOST: usize = 8;
+    let listed: Vec<String> = missing.iter().take(MOST).map(u32::to_string).collect();
+    let more = missing.len().saturating_sub(MOST);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    match missing.len() {
+        1 => format!("share {} of {of} is missing", listed.join("")),
+        _ => format!("shares {}{more} of {of} are missing", listed.join(", ")),
+    }
+}

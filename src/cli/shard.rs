@@ -1,0 +1,99 @@
+//! Which share of a picture's samples is to be made: as flags say it, or the scheduler.
+
+use super::Problem;
+use super::args::Shard;
+use rt_lang::saved::Share;
+
+/// The share of so many samples that a flag means. `variable` gives the value of an environment variable.
+pub fn share(
+    shard: Shard,
+    samples: u32,
+    variable: &dyn Fn(&str) -> Option<String>,
+) -> Result<Share, Problem> {
+    let (index, of) = match shard {
+        Shard::Given(index, of) => (index, of),
+        Shard::Auto => array(variable)?,
+        Shard::AutoOf(of) => (index(variable)?, of),
+    };
+    let share = Share { index, of, samples };
+    match share {
+        _ if !(1..=of).contains(&index) => {
+            Err(Problem::new(format!("there is no share {index} of {of}: they are counted from 1 to {of}")))
+        }
+        share if share.is_one() => Ok(share),
+        _ => Err(Problem::new(format!("{samples} samples a pixel cannot be divided into {of} shares"))
+            .help("ask for more samples, or for fewer shares")),
+    }
+}
+
+/// The share that is the task of a Slurm job array. Part of an array has not as many tasks as there are shares, so it must be
+/// a whole one, from 1 on.
+fn array(variable: &dyn Fn(&str) -> Option<String>) -> Result<(u32, u32), Problem> {
+    let number = |name: &str| variable(name).and_then(|value| value.trim().parse::<u32>().ok());
+    let numbers = ["ID", "COUNT", "MIN", "MAX"].map(|name| number(&format!("SLURM_ARRAY_TASK_{name}")));
+    let help =
+        "say how many shares there are: `--shard auto/N` takes only the first number from the scheduler";
+    match numbers {
+        [Some(id), Some(count), Some(1), Some(max)] if max == count => Ok((id, count)),
+        [Some(_), Some(count), ..] => {
+            let which = format!("this is a Slurm job array of {count} tasks, and not all from 1 to {count}");
+            Err(Problem::new(format!("{which}: `--shard auto` cannot tell how many shares there are"))
+                .help(help))
+        }
+        _ => {
+            Err(Problem::new("`--shard auto` is for a task of a Slurm job array, and this is none")
+                .help(help))
+        }
+    }
+}
+
+/// The number of the share by the index of the task: that of Slurm as it is, that of Kubernetes, which counts from 0, plus 1.
+fn index(variable: &dyn Fn(&str) -> Option<String>) -> Result<u32, Problem> {
+    let number = |name: &str| variable(name).and_then(|value| value.trim().parse::<u32>().ok());
+    let slurm = number("SLURM_ARRAY_TASK_ID");
+    let kubernetes = || number("JOB_COMPLETION_INDEX").and_then(|index| index.checked_add(1));
+    slurm.or_else(kubernetes).ok_or_else(|| {
+        let problem = Problem::new("no scheduler says which share this is");
+        problem.help(
+            "`--shard auto/N` asks SLURM_ARRAY_TASK_ID, then JOB_COMPLETION_INDEX; else give `--shard I/N`",
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ask(shard: Shard, variables: &[(&str, &str)]) -> Result<(u32, u32), String> {
+        let variable = |name: &str| {
+            variables.iter().find(|(known, _)| *known == name).map(|(_, value)| value.to_string())
+        };
+        share(shard, 64, &variable).map(|share| (share.index, share.of)).map_err(|problem| problem.message)
+    }
+
+    fn slurm<'a>(id: &'a str, count: &'a str, min: &'a str, max: &'a str) -> [(&'static str, &'a str); 4] {
+        [
+            ("SLURM_ARRAY_TASK_ID", id),
+            ("SLURM_ARRAY_TASK_COUNT", count),
+            ("SLURM_ARRAY_TASK_MIN", min),
+            ("SLURM_ARRAY_TASK_MAX", max),
+        ]
+    }
+
+    #[test]
+    fn the_scheduler_says_which_share_it_is() {
+        assert_eq!(ask(Shard::Given(2, 4), &[]), Ok((2, 4)));
+        assert_eq!(ask(Shard::Auto, &slurm("3", "4", "1", "4")), Ok((3, 4)));
+        // A lost one, made again alone.
+        let again = slurm("3", "1", "3", "3");
+        assert!(ask(Shard::Auto, &again).is_err_and(|why| why.contains("cannot tell")));
+        assert_eq!(ask(Shard::AutoOf(4), &again), Ok((3, 4)));
+        assert_eq!(ask(Shard::AutoOf(4), &[("JOB_COMPLETION_INDEX", "0")]), Ok((1, 4)));
+        assert!(ask(Shard::AutoOf(4), &[("JOB_COMPLETION_INDEX", "4")]).is_err());
+        assert!(ask(Shard::Auto, &slurm("0", "4", "0", "3")).is_err());
+        assert!(
+            ask(Shard::Auto, &[]).is_err() && ask(Shard::AutoOf(4), &[("SLURM_ARRAY_TASK_ID", "x")]).is_err()
+        );
+        assert!(ask(Shard::Given(1, 65), &[]).is_err_and(|why| why.contains("cannot be divided")));
+    }
+}

@@ -1,0 +1,239 @@
+//! Traces the picture of one scene: from what was kept of it, if anything was, until a limit is reached.
+
+use super::Problem;
+use super::args::Build;
+use super::build::{Context, chosen_stops};
+use super::keep::{self, Keeper, Places};
+use super::progress::Progress;
+use super::shard;
+use super::target::Target;
+use rt_lang::aov::{self, Aov};
+use rt_lang::output::{Channels, Facts, Picture};
+use rt_lang::render::feedback::Feedback;
+use rt_lang::render::halt::{Limit, Limits};
+use rt_lang::render::making::Making;
+use rt_lang::render::{Cancelled, Control, Prepass, Shown, Tracer, Window};
+use rt_lang::saved::{self, Share, Subject};
+use rt_lang::scene::{self, Scene, identity::Identity};
+use rt_lang::why::Provenance;
+use std::path::Path;
+use std::sync::Arc;
+
+/// What is to be traced.
+pub struct Plan<'a> {
+    from: Provenance<'a>,
+    window: Window,
+    limits: Limits,
+    share: Option<Share>,
+    places: Option<Places>,
+}
+
+/// A window of a picture as traced, and what there is to say of it.
+pub struct Traced {
+    /// The picture.
+    pub picture: Picture,
+    /// How it came about.
+    pub facts: Facts,
+    /// What is shown beside the light.
+    pub channels: Channels,
+    /// The least and the most samples of a pixel.
+    pub samples: [u32; 2],
+    /// The mean over the pixels.
+    pub mean_samples: f64,
+    /// What it stopped at.
+    pub limit: Limit,
+    /// Whether there is as little noise as was wanted.
+    pub target_met: bool,
+    /// What it is exposed by, whoever chose it.
+    pub stops: f64,
+    /// What would be chosen.
+    pub fitting: f64,
+    /// About the share of the light that the limit of bounces loses.
+    pub cut: f64,
+    /// Its exact sums, and of which share, if it is to be put together with others.
+    pub sums: Option<(Subject, Making)>,
+    /// What many paths tell, if that was asked for.
+    pub feedback: Option<Feedback>,
+}
+
+impl<'a> Plan<'a> {
+    /// What flags and a scene say of a window that goes to these targets.
+    pub fn new(
+        arguments: &Build,
+        from: Provenance<'a>,
+        window: Window,
+        targets: &[Target],
+    ) -> Result<Plan<'a>, Problem> {
+        let share = share(arguments, from.scene)?;
+        let limits = limits(arguments, from.scene, share)?;
+        let places = keep::places(&arguments.keeping, targets)?;
+        Ok(Plan { from, window, limits, share, places })
+    }
+}
+
+/// The share of the samples that is to be made, if not all.
+fn share(arguments: &Build, scene: &Scene) -> Result<Option<Share>, Problem> {
+    let Some(shard) = arguments.keeping.shard else { return Ok(None) };
+    let scene::Target::Samples(samples) = scene.trace.target else {
+        let problem = Problem::new("`--shard` needs a number of samples, and the scene asks for a noise");
+        return Err(problem.help("every share must know its samples before: give `--samples N`"));
+    };
+    shard::share(shard, samples, &|name| std::env::var(name).ok()).map(Some)
+}
+
+fn limits(arguments: &Build, scene: &Scene, share: Option<Share>) -> Result<Limits, Problem> {
+    let mut limits = Limits::from(scene.trace.target);
+    if let Some(share) = share {
+        limits.samples = share.range().len() as u32;
+    }
+    if let (Some(_), Some(samples)) = (limits.noise, arguments.taking.samples) {
+        limits.samples = samples;
+    }
+    limits.time = arguments.halting.time;
+    if let Some(least) = arguments.halting.min_samples {
+        if limits.noise.is_none() {
+            let problem = Problem::new("`--min-samples` is for a noise target, and there is none");
+            return Err(problem.help("give one with `--noise 1%`, or leave the flag out"));
+        }
+        limits.least = least;
+    }
+    Ok(limits)
+}
+
+/// Traces on the current rayon pool, showing how far it is. Asked to end, it ends the process.
+pub fn trace(context: &Context, name: &Path, plan: Plan) -> Result<Traced, Problem> {
+    let control = Arc::new(Control::new());
+    context.interrupt.watch(control.clone());
+    let shown = context.terminal.interactive && !context.arguments.quiet;
+    let _progress = shown.then(|| Progress::watch(control.clone(), name.display().to_string()));
+    let Plan { from, window, limits, share, places } = plan;
+    let tracing = Tracing::new(from, window, limits, share, control);
+    let aovs = &context.arguments.aov;
+    let every = context.arguments.keeping.checkpoint_every;
+    let keeper = places.map(|places| {
+        Keeper::new(places, every, (&tracing.subject, &tracing.facts), context.interrupt, context.terminal)
+    });
+    let ended = match keeper {
+        Some(mut keeper) => {
+            let mut making = tracing.begin(window, keeper.resume()?)?;
+            let limit = tracing.go_on_keeping(&mut making, &mut keeper, context);
+            limit.and_then(|limit| tracing.finish(making, limit, aovs))
+        }
+        None => {
+            let mut making = tracing.begin(window, None)?;
+            let limit = tracing.go_on(&mut making, &mut |_| {});
+            limit.and_then(|limit| tracing.finish(making, limit, aovs))
+        }
+    };
+    Ok(ended.unwrap_or_else(|Cancelled| context.interrupt.wait()))
+}
+
+/// Traces what a scene says, and nothing besides.
+pub fn take(from: Provenance, window: Window, control: Arc<Control>) -> Result<Traced, Cancelled> {
+    let limits = Limits::from(from.scene.trace.target);
+    let tracing = Tracing::new(from, window, limits, None, control);
+    let mut making = Making::new(window, tracing.prepass.scale);
+    let limit = tracing.go_on(&mut making, &mut |_| {})?;
+    tracing.finish(making, limit, &[])
+}
+
+/// A picture being traced.
+struct Tracing<'a> {
+    from: Provenance<'a>,
+    tracer: Tracer<'a>,
+    prepass: Prepass,
+    shown: Shown,
+    limits: Limits,
+    subject: Subject,
+    /// How the picture comes about, as far as that is known before.
+    facts: Facts,
+    control: Arc<Control>,
+}
+
+impl<'a> Tracing<'a> {
+    fn new(
+        from: Provenance<'a>,
+        window: Window,
+        limits: Limits,
+        share: Option<Share>,
+        control: Arc<Control>,
+    ) -> Tracing<'a> {
+        let scene = from.scene;
+        let tracer = Tracer::new(scene);
+        let prepass = tracer.prepass();
+        let stops = scene.develop.exposure.unwrap_or(chosen_stops(&prepass));
+        let shown = Shown { stops, tonemap: scene.develop.tonemap };
+        let facts = Facts {
+            seed: Some(scene.trace.seed),
+            scene: Some(scene.hash().to_hex().to_string()),
+            stops: Some(stops),
+            tonemap: Some(shown.tonemap),
+            ..Facts::unknown()
+        };
+        let identity = Identity::new(scene, [window.x, window.y, window.width, window.height]);
+        let subject = Subject { program: facts.software.clone(), identity, share };
+        Tracing { from, tracer, prepass, shown, limits, subject, facts, control }
+    }
+
+    /// The picture to go on with, or a new one.
+    fn begin(&self, window: Window, kept: Option<Making>) -> Result<Making, Problem> {
+        let scale = self.prepass.scale;
+        match kept {
+            Some(making) if making.film().scale() == scale && making.film().window() == window => Ok(making),
+            Some(_) => Err(Problem::new("the checkpoint holds sums of another scale")),
+            None => {
+                let start = self.subject.share.map_or(0, |share| share.range().start);
+                Ok(Making::from_sample(window, scale, start))
+            }
+        }
+    }
+
+    fn go_on(&self, making: &mut Making, between: &mut dyn FnMut(&Making)) -> Result<Limit, Cancelled> {
+        self.tracer.go_on(making, &self.limits, self.shown, &self.control, between)
+    }
+
+    /// The same, and keeps the samples: now and then, when it is done, and when it is cancelled.
+    fn go_on_keeping(
+        &self,
+        making: &mut Making,
+        keeper: &mut Keeper,
+        context: &Context,
+    ) -> Result<Limit, Cancelled> {
+        let Context { interrupt, terminal, .. } = *context;
+        interrupt.keep();
+        let before = making.mean_samples();
+        let limit = self.go_on(making, &mut |making| keeper.consider(making));
+        if making.mean_samples() > before {
+            keeper.keep(making);
+        }
+        interrupt.kept(terminal);
+        limit
+    }
+
+    fn finish(&self, making: Making, limit: Limit, aovs: &[Aov]) -> Result<Traced, Cancelled> {
+        let (samples, mean_samples) = (making.samples(), making.mean_samples());
+        let facts = Facts { limit: Some(limit.word().into()), ..self.facts.clone() };
+        let facts = saved::judged(facts, making.film(), samples);
+        let film = making.film();
+        let of_first = aovs.iter().any(|aov| aov.is_of_first_hits());
+        let first =
+            of_first.then(|| self.tracer.first_hits(film.window(), samples[1], &self.control)).transpose()?;
+        Ok(Traced {
+            picture: saved::picture(film, &self.subject.identity),
+            target_met: self
+                .limits
+                .noise
+                .is_none_or(|wanted| facts.noise.is_some_and(|noise| noise <= wanted)),
+            channels: aov::channels(aovs, film, first.as_ref(), self.from),
+            facts,
+            samples,
+            mean_samples,
+            limit,
+            stops: self.shown.stops,
+            fitting: chosen_stops(&self.prepass),
+            cut: self.prepass.cut,
+            sums: self.subject.share.map(|_| (self.subject.clone(), making)),
+            feedback: None,
+        })
+    }
+}

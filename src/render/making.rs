@@ -1,0 +1,378 @@
+//! A picture in the making: which samples it has, which it gets next, and going on with it.
+//!
+//! In what order samples come makes no difference to their sums, so a picture that is put aside and gone on with has the bits
+//! of one that was made at once.
+
+use super::control::{Cancelled, Control};
+use super::film::{Film, Window};
+use super::halt::{BLOCK, Limit, Limits, noisy};
+use super::{PASS, Prepass, Rendered, Shown, Tracer};
+use std::ops::Range;
+use std::time::{Duration, Instant};
+
+/// How long a step may take: work that is not yet in the film is lost where it is cancelled.
+const STEP: Duration = Duration::from_millis(500);
+/// Paths of a first step, after which it is known how long they take.
+const FIRST_PATHS: u64 = 1 << 19;
+
+/// Samples that a picture has, and what it is on the way to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Making {
+    film: Film,
+    /// The number of each pixel's first sample.
+    start: u32,
+    /// Those of the film's window, row by row.
+    blocks: Vec<Block>,
+}
+
+/// Pixels that have the same samples.
+#[derive(Clone, Debug, PartialEq)]
+struct Block {
+    window: Window,
+    /// How many each has.
+    samples: u32,
+    /// How many each is to have.
+    aim: u32,
+}
+
+/// Samples to take together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    blocks: Vec<usize>,
+    windows: Vec<Window>,
+    /// Which, by their numbers.
+    samples: Range<u32>,
+}
+
+impl Making {
+    /// A picture without samples.
+    pub fn new(window: Window, scale: f64) -> Making {
+        Making::from_sample(window, scale, 0)
+    }
+
+    /// The same of a share of the samples, from this one on.
+    pub fn from_sample(window: Window, scale: f64, start: u32) -> Making {
+        let blocks = window.tiles(BLOCK).map(|window| Block { window, samples: 0, aim: 0 }).collect();
+        Making { film: Film::new(window, scale), start, blocks }
+    }
+
+    /// One that was put aside: its film, the number of its first sample, and what each pixel was on the way to, row by row.
+    /// None where pixels of a block differ, or have more than they were to have.
+    pub fn resumed(film: Film, start: u32, aims: &[u32]) -> Option<Making> {
+        let window = film.window();
+        let block = |window_of: Window| {
+            let mut pixels = (window_of.y..window_of.y + window_of.height)
+                .flat_map(|y| (window_of.x..window_of.x + window_of.width).map(move |x| (x, y)))
+                .map(|(x, y)| (film.samples(x, y), aims.get(window.index(x, y)).copied()));
+            let (samples, aim) = pixels.next()?;
+            let alike = pixels.all(|other| other == (samples, aim));
+            let aim = aim.filter(|aim| alike && *aim >= samples)?;
+            Some(Block { window: window_of, samples, aim })
+        };
+        let blocks = window.tiles(BLOCK).map(block).collect::<Option<Vec<Block>>>()?;
+        Some(Making { film, start, blocks })
+    }
+
+    /// Its sums.
+    pub fn film(&self) -> &Film {
+        &self.film
+    }
+
+    /// Its sums, and nothing else.
+    pub fn into_film(self) -> Film {
+        self.film
+    }
+
+    /// The number of each pixel's first sample.
+    pub fn start(&self) -> u32 {
+        self.start
+    }
+
+    /// How many samples each pixel is to have, row by row.
+    pub fn aims(&self) -> Vec<u32> {
+        let window = self.film.window();
+        let mut aims = vec![0; window.pixels()];
+        for Block { window: block, aim, .. } in &self.blocks {
+            for y in block.y..block.y + block.height {
+                let start = window.index(block.x, y);
+                aims[start..start + block.width as usize].fill(*aim);
+            }
+        }
+        aims
+    }
+
+    /// The least and the most samples of a pixel.
+    pub fn samples(&self) -> [u32; 2] {
+        let samples = || self.blocks.iter().map(|block| block.samples);
+        [samples().min().unwrap_or(0), samples().max().unwrap_or(0)]
+    }
+
+    /// The mean number of samples of a pixel.
+    pub fn mean_samples(&self) -> f64 {
+        self.paths_done() as f64 / self.film.window().pixels().max(1) as f64
+    }
+
+    /// What it is when it stops here.
+    pub fn rendered(self, limits: &Limits, limit: Limit, shown: Shown) -> Rendered {
+        let [_, samples] = self.samples();
+        let noise = self.film.noise(shown.stops, shown.tonemap);
+        let target_met = limits.noise.is_none_or(|wanted| noise <= wanted);
+        Rendered { samples, mean_samples: self.mean_samples(), noise, limit, target_met, film: self.film }
+    }
+
+    fn paths_done(&self) -> u64 {
+        self.blocks.iter().map(|block| block.window.pixels() as u64 * u64::from(block.samples)).sum()
+    }
+
+    /// Paths to trace if no block gets more than so many samples.
+    fn paths_to(&self, most: u32) -> u64 {
+        let missing = |block: &Block| u64::from(block.aim.min(most).saturating_sub(block.samples));
+        self.blocks.iter().map(|block| block.window.pixels() as u64 * missing(block)).sum()
+    }
+
+    /// The next samples to take, about so many at most; none where every block has what it is to have.
+    fn next(&self, paths: u64) -> Option<Step> {
+        let open = || self.blocks.iter().enumerate().filter(|(_, block)| block.samples < block.aim);
+        let from = open().map(|(_, block)| block.samples).min()?;
+        let alike = || open().filter(|(_, block)| block.samples == from);
+        // Blocks that are to have fewer than others are done first.
+        let aim = alike().map(|(_, block)| block.aim).min()?;
+        let to = aim.min(from + PASS);
+        let (mut count, mut blocks, mut windows) = (0, vec![], vec![]);
+        for (index, block) in alike() {
+            count += block.window.pixels() as u64 * u64::from(to - from);
+            if count > paths && !blocks.is_empty() {
+                break;
+            }
+            blocks.push(index);
+            windows.push(block.window);
+        }
+        Some(Step { blocks, windows, samples: self.start + from..self.start + to })
+    }
+
+    fn taken(&mut self, step: &Step) {
+        for &index in &step.blocks {
+            self.blocks[index].samples = step.samples.end - self.start;
+        }
+    }
+
+    /// Aims for the next number of samples at which pixels are judged, or says which limit is reached. Where blocks lack samples
+    /// they were to have, they get these first.
+    fn go_on(&mut self, limits: &Limits, shown: Shown) -> Option<Limit> {
+        let [least, most] = self.samples();
+        let goal = limits.rung(most);
+        let Some(wanted) = limits.noise else {
+            self.blocks.iter_mut().for_each(|block| block.aim = goal.max(block.samples));
+            return (least >= goal).then_some(Limit::Samples);
+        };
+        let is_open = |block: &Block| block.samples < block.aim;
+        let unjudged = most < limits.rung(0);
+        if unjudged || self.blocks.iter().any(is_open) {
+            // Put aside on the way, so those go on that were going on.
+            let goes_on = |block: &&mut Block| unjudged || is_open(block);
+            self.blocks.iter_mut().filter(goes_on).for_each(|block| block.aim = goal.max(block.samples));
+            return None;
+        }
+        if most > 0 && most < goal {
+            // Cut short by time.
+            self.blocks.iter_mut().filter(|block| block.samples == most).for_each(|block| block.aim = goal);
+            return None;
+        }
+        let noisy = noisy(&self.film, shown, wanted);
+        if !noisy.contains(&true) {
+            return Some(Limit::Noise);
+        }
+        if most >= limits.samples {
+            return Some(Limit::Samples);
+        }
+        let goal = limits.rung(most + 1);
+        for (block, noisy) in self.blocks.iter_mut().zip(noisy) {
+            block.aim = if noisy { goal } else { block.samples };
+        }
+        None
+    }
+
+    /// Aims for no more samples than so many paths give, or says that not even one more fits. Where it is not known how many
+    /// paths there is time for, for one more.
+    fn cut_short(&mut self, paths: Option<u64>) -> Option<Limit> {
+        let [_, most] = self.samples();
+        let goal = self.blocks.iter().map(|block| block.aim).max().unwrap_or(0);
+        // One sample is made to know how long it takes.
+        let fits =
+            |aim: u32| paths.map_or(aim == most + 1, |paths| aim <= most || self.paths_to(aim) <= paths);
+        if goal > most && !fits(most + 1) {
+            return Some(Limit::Time);
+        }
+        let (mut low, mut high) = (goal.min(most + 1), goal);
+        while low < high {
+            let middle = low + (high - low).div_ceil(2);
+            if fits(middle) { low = middle } else { high = middle - 1 }
+        }
+        self.blocks.iter_mut().for_each(|block| block.aim = block.aim.min(low.max(block.samples)));
+        None
+    }
+}
+
+/// How fast paths are traced.
+struct Pace {
+    start: Instant,
+    paused: Duration,
+    rate: Option<f64>,
+}
+
+impl Pace {
+    fn start(control: &Control) -> Pace {
+        Pace { start: Instant::now(), paused: control.paused_for(), rate: None }
+    }
+
+    fn elapsed(&self, control: &Control) -> Duration {
+        self.start.elapsed().saturating_sub(control.paused_for().saturating_sub(self.paused))
+    }
+
+    /// So many paths took so long.
+    fn took(&mut self, paths: u64, time: Duration) {
+        let rate = paths as f64 / time.as_secs_f64().max(1e-6);
+        self.rate = Some(self.rate.map_or(rate, |before| 0.5 * (before + rate)));
+    }
+
+    /// How many fit in a time; none where that is not known.
+    fn fit(&self, time: Duration) -> Option<u64> {
+        self.rate.map(|rate| (rate * time.as_secs_f64()) as u64)
+    }
+}
+
+impl Tracer<'_> {
+    /// Traces a window of the picture on the current rayon pool until a limit is reached.
+    ///
+    /// A noise target is judged on the window, so a crop may stop at another number of samples than the whole.
+    ///
+    /// # Errors
+    ///
+    /// If the control cancels.
+    pub fn render(
+        &self,
+        window: Window,
+        limits: impl Into<Limits>,
+        prepass: &Prepass,
+        shown: Shown,
+        control: &Control,
+    ) -> Result<Rendered, Cancelled> {
+        let limits = limits.into();
+        let mut making = Making::new(window, prepass.scale);
+        let limit = self.go_on(&mut making, &limits, shown, control, &mut |_| {})?;
+        Ok(making.rendered(&limits, limit, shown))
+    }
+
+    /// Goes on with a picture until a limit is reached, and tells `between` after every step of about half a second.
+    ///
+    /// # Errors
+    ///
+    /// If the control cancels; the picture then has the samples of all steps that were done.
+    pub fn go_on(
+        &self,
+        making: &mut Making,
+        limits: &Limits,
+        shown: Shown,
+        control: &Control,
+        between: &mut dyn FnMut(&Making),
+    ) -> Result<Limit, Cancelled> {
+        let mut pace = Pace::start(control);
+        let done = making.paths_done();
+        control.plan(done);
+        control.finish(done);
+        loop {
+            if let Some(limit) = making.go_on(limits, shown) {
+                return Ok(limit);
+            }
+            if let Some(time) = limits.time {
+                let left = time.saturating_sub(pace.elapsed(control));
+                if let Some(limit) = making.cut_short(pace.fit(left)) {
+                    return Ok(limit);
+                }
+            }
+            control.plan(making.paths_to(u32::MAX));
+            while let Some(step) = making.next(pace.fit(STEP).unwrap_or(FIRST_PATHS)) {
+                let start = pace.elapsed(control);
+                self.trace_step(&mut making.film, &step.windows, step.samples.clone(), control)?;
+                making.taken(&step);
+                let pixels: usize = step.windows.iter().map(Window::pixels).sum();
+                let time = pace.elapsed(control).saturating_sub(start);
+                pace.took(pixels as u64 * step.samples.len() as u64, time);
+                between(making);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Target, Tonemap};
+
+    const SHOWN: Shown = Shown { stops: 0.0, tonemap: Tonemap::None };
+
+    /// Takes all steps of at most so many paths, without tracing, and counts how often each pixel got each sample.
+    fn all_steps(making: &mut Making, paths: u64, counts: &mut [Vec<u32>]) {
+        let window = making.film.window();
+        while let Some(step) = making.next(paths) {
+            for block in &step.windows {
+                for (x, y) in (block.y..block.y + block.height)
+                    .flat_map(|y| (block.x..block.x + block.width).map(move |x| (x, y)))
+                {
+                    let pixel = &mut counts[window.index(x, y)];
+                    step.samples.clone().for_each(|sample| pixel[sample as usize] += 1);
+                }
+            }
+            making.taken(&step);
+        }
+    }
+
+    #[test]
+    fn every_pixel_gets_every_sample_once() {
+        for (start, samples, paths) in [(0, 1, 1), (0, 150, 100_000), (37, 64, 3_000), (5, 3, u64::MAX)] {
+            let window = Window { x: 3, y: 5, width: 50, height: 37 };
+            let mut making = Making::from_sample(window, 1.0, start);
+            let limits = Limits::from(Target::Samples(samples));
+            let mut counts = vec![vec![0; (start + samples) as usize]; window.pixels()];
+            assert_eq!(making.go_on(&limits, SHOWN), None);
+            all_steps(&mut making, paths, &mut counts);
+            assert_eq!(making.go_on(&limits, SHOWN), Some(Limit::Samples));
+            let (before, taken): (Vec<&[u32]>, Vec<&[u32]>) =
+                counts.iter().map(|pixel| pixel.split_at(start as usize)).unzip();
+            assert!(before.concat().iter().all(|count| *count == 0));
+            assert!(taken.concat().iter().all(|count| *count == 1));
+            assert_eq!((making.samples(), making.mean_samples()), ([samples; 2], f64::from(samples)));
+        }
+    }
+
+    #[test]
+    fn time_cuts_a_rung_short_and_one_sample_is_always_made() {
+        let window = Window::whole([40, 40]);
+        let limits = Limits { time: Some(Duration::ZERO), ..Limits::from(Target::Samples(100)) };
+        let mut making = Making::new(window, 1.0);
+        assert_eq!(making.go_on(&limits, SHOWN), None);
+        assert_eq!(making.cut_short(None), None);
+        assert_eq!(making.paths_to(u32::MAX), 1600);
+        let mut counts = vec![vec![0; 100]; window.pixels()];
+        all_steps(&mut making, u64::MAX, &mut counts);
+        assert_eq!(making.go_on(&limits, SHOWN), None);
+        assert_eq!(making.clone().cut_short(Some(1599)), Some(Limit::Time));
+        assert_eq!(making.cut_short(Some(1600 * 9 + 5)), None);
+        all_steps(&mut making, u64::MAX, &mut counts);
+        assert_eq!(making.samples(), [10; 2]);
+    }
+
+    #[test]
+    fn what_was_put_aside_goes_on_where_it_was() {
+        let window = Window::whole([40, 20]);
+        let limits = Limits::from(Target::Samples(100));
+        let mut making = Making::new(window, 1.0);
+        assert_eq!(making.go_on(&limits, SHOWN), None);
+        let again = Making::resumed(making.film.clone(), 0, &making.aims());
+        assert_eq!(again.as_ref(), Some(&making));
+        assert_eq!(Making::resumed(making.film.clone(), 0, &[5; 3]), None);
+        let mut uneven = making.aims();
+        uneven[1] = 7;
+        assert_eq!(Making::resumed(making.film.clone(), 0, &uneven), None);
+    }
+}

@@ -1,0 +1,283 @@
+//! A picture in the making as an EXR that shows it and holds its exact sums, and back: what a checkpoint is, and a share of the
+//! samples that another machine took.
+//!
+//! Beside R, G, B and maybe A, which any program shows, there are the channels of [`CHANNELS`] in whole numbers, and as
+//! attributes what the sums depend on ([`Identity`]), and a checksum over all of these. What is read may be anything: it is
+//! refused, with a reason, unless it is whole and its numbers can be sums of samples.
+
+mod merge;
+
+use crate::output::{Channels, Facts, Frame, Picture, Words, decode_words, encode_exr};
+use crate::render::film::{MOST_SAMPLES, Pixel, WORDS};
+use crate::render::making::Making;
+use crate::render::{Film, Window};
+use crate::scene::{Tonemap, identity::Identity};
+pub use merge::Merging;
+use std::fmt;
+use std::ops::Range;
+
+/// The channels of exact sums: the words of a pixel (see [`Pixel::words`]), and how many samples it is to have.
+pub const CHANNELS: [&str; WORDS + 1] = [
+    "sums.red.0",
+    "sums.red.1",
+    "sums.green.0",
+    "sums.green.1",
+    "sums.blue.0",
+    "sums.blue.1",
+    "sums.squares.0",
+    "sums.squares.1",
+    "sums.squares.2",
+    "sums.squares.3",
+    "sums.covered.0",
+    "sums.covered.1",
+    "sums.open.0",
+    "sums.open.1",
+    "sums.samples",
+    "sums.aim",
+];
+
+/// The form of these files. Another number is another form.
+const VERSION: &str = "1";
+
+// Attributes. Those of the identity have its names behind this.
+const PREFIX: &str = "rtc.saved.";
+const FORM: &str = "rtc.saved.version";
+const PROGRAM: &str = "rtc.saved.program";
+const SHARE: &str = "rtc.saved.share";
+const START: &str = "rtc.saved.start";
+const SCALE: &str = "rtc.saved.scale";
+const CHECKSUM: &str = "rtc.saved.checksum";
+
+/// What samples are of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Subject {
+    /// The program that traces them, with its version.
+    pub program: String,
+    /// What they depend on.
+    pub identity: Identity,
+    /// Which share of the samples they are, where others make the rest.
+    pub share: Option<Share>,
+}
+
+/// A picture in the making, as it was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Saved {
+    /// What it is of.
+    pub subject: Subject,
+    /// The samples.
+    pub making: Making,
+    /// How the picture came about.
+    pub facts: Facts,
+}
+
+/// One of several shares of a picture's samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Share {
+    /// From 1 to the number of shares.
+    pub index: u32,
+    /// How many there are.
+    pub of: u32,
+    /// Samples a pixel of all shares together.
+    pub samples: u32,
+}
+
+impl Share {
+    /// Its samples: each share is of as many as any other, or one more.
+    pub fn range(&self) -> Range<u32> {
+        let bound = |index: u32| (u64::from(self.samples) * u64::from(index) / u64::from(self.of)) as u32;
+        bound(self.index - 1)..bound(self.index)
+    }
+
+    /// Whether there is such a share. There are no more of them than samples, so that none is empty.
+    pub fn is_one(&self) -> bool {
+        (1..=self.of).contains(&self.index) && self.of <= self.samples && self.samples <= MOST_SAMPLES
+    }
+
+    fn parse(text: &str) -> Option<Share> {
+        let (index, rest) = text.split_once('/')?;
+        let (of, samples) = rest.split_once(" of ")?;
+        let share =
+            Share { index: index.parse().ok()?, of: of.parse().ok()?, samples: samples.parse().ok()? };
+        share.is_one().then_some(share)
+    }
+}
+
+/// As `2/4 of 64`.
+impl fmt::Display for Share {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{} of {}", self.index, self.of, self.samples)
+    }
+}
+
+/// Why something is not taken, in words that follow the name of its file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refused(String);
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+fn refused<T>(reason: impl Into<String>) -> Result<T, Refused> {
+    Err(Refused(reason.into()))
+}
+
+impl Subject {
+    /// The bytes of the file of a picture of this in the making.
+    pub fn encode(&self, making: &Making, facts: &Facts) -> Result<Vec<u8>, Refused> {
+        let mut channels =
+            Channels { words: words(making), texts: self.texts(making), ..Channels::default() };
+        let checksum = checksum(&channels, facts);
+        channels.texts.push((CHECKSUM.into(), checksum));
+        let bytes = encode_exr(&picture(making.film(), &self.identity), facts, channels);
+        bytes.map_err(|reason| Refused(reason.to_string()))
+    }
+
+    /// The attributes of the file, in order, but for the checksum.
+    fn texts(&self, making: &Making) -> Vec<(String, String)> {
+        let own = |(name, value): (&str, &str)| (format!("{PREFIX}{name}"), value.to_string());
+        let mut texts: Vec<(String, String)> = self.identity.entries().map(own).collect();
+        texts.extend([
+            (FORM.into(), VERSION.into()),
+            (PROGRAM.into(), self.program.clone()),
+            (START.into(), making.start().to_string()),
+            (SCALE.into(), format!("{:e}", making.film().scale())),
+        ]);
+        texts.extend(self.share.map(|share| (SHARE.into(), share.to_string())));
+        texts.sort();
+        texts
+    }
+    /// Why samples of another subject are none of this one, if they are not.
+    pub fn refuses(&self, other: &Subject) -> Option<String> {
+        if self.program != other.program {
+            return Some(format!(
+                "it was made by `{}`, and this is {}",
+                other.program.escape_debug(),
+                self.program
+            ));
+        }
+        let mut differences = self.identity.differences(&other.identity);
+        if self.share != other.share {
+            let name = |share: Option<Share>| {
+                share.map_or("all".to_string(), |Share { index, of, samples }| {
+                    format!("{index}/{of} of {samples} samples")
+                })
+            };
+            differences.push(format!("its share ({}, not {})", name(other.share), name(self.share)));
+        }
+        let (last, others) = differences.split_last()?;
+        let and = if others.is_empty() { String::new() } else { format!("{} and ", others.join(", ")) };
+        Some(format!("it is of another picture, which differs in {and}{last}"))
+    }
+}
+
+impl Saved {
+    /// Reads a file.
+    pub fn decode(file: &[u8]) -> Result<Saved, Refused> {
+        let (frame, facts, mut channels) =
+            decode_words(file).map_err(|reason| Refused(format!("is no EXR: {reason}")))?;
+        let text =
+            |name: &str| channels.texts.iter().find(|(n, _)| n == name).map(|(_, value)| value.clone());
+        match text(FORM) {
+            None => return refused("holds no exact sums: it is no checkpoint and no share of a picture"),
+            Some(version) if version != VERSION => return refused("is of another version of rtc"),
+            Some(_) => {}
+        }
+        let (checksum_said, program, share, start, scale) =
+            (text(CHECKSUM), text(PROGRAM), text(SHARE), text(START), text(SCALE));
+        let identity = Identity::from_values(|name| text(&format!("{PREFIX}{name}")));
+        channels.texts.retain(|(name, _)| name.starts_with(PREFIX) && name != CHECKSUM);
+        channels.words.sort_by_key(|words| CHANNELS.iter().position(|name| *name == words.name));
+        if !channels.words.iter().map(|words| words.name.as_str()).eq(CHANNELS)
+            || checksum_said != Some(checksum(&channels, &facts))
+        {
+            return refused("is damaged: its checksum is another");
+        }
+        let share = share.map(|text| Share::parse(&text).ok_or(text)).transpose();
+        let start = start.and_then(|text| text.parse().ok()).filter(|start| *start <= MOST_SAMPLES);
+        let scale = scale.and_then(|text| text.parse().ok());
+        match (program, identity, share, start, scale) {
+            (Some(program), Some(identity), Ok(share), Some(start), Some(scale))
+                if frame.whole == identity.size() =>
+            {
+                let making = making(frame, start, scale, &channels.words)
+                    .ok_or_else(|| Refused("holds numbers that are no sums of samples".into()))?;
+                Ok(Saved { subject: Subject { program, identity, share }, making, facts })
+            }
+            _ => refused("does not say what it is of"),
+        }
+    }
+}
+
+/// How a picture came about, with its samples and their noise. One sample a pixel does not tell how noisy it is.
+pub fn judged(facts: Facts, film: &Film, [least, most]: [u32; 2]) -> Facts {
+    let (stops, tonemap) = (facts.stops.unwrap_or(0.0), facts.tonemap.unwrap_or(Tonemap::Neutral));
+    let noise = (least > 1).then(|| film.noise(stops, tonemap));
+    Facts { samples: Some(u64::from(most)), noise, ..facts }
+}
+
+/// The picture that sums show.
+pub fn picture(film: &Film, identity: &Identity) -> Picture {
+    let Window { x, y, width, height } = film.window();
+    let whole = identity.size();
+    let picture = Picture::gather(whole, [x, y], [width, height], |x, y| film.mean(x, y));
+    if identity.is_transparent() { picture.with_alpha(|x, y| film.alpha(x, y)) } else { picture }
+}
+
+fn words(making: &Making) -> Vec<Words> {
+    let pixels = making.film().pixels();
+    let mut values: Vec<Vec<u32>> = (0..WORDS).map(|_| Vec::with_capacity(pixels.len())).collect();
+    for pixel in pixels {
+        for (values, word) in values.iter_mut().zip(pixel.words()) {
+            values.push(word);
+        }
+    }
+    values.push(making.aims());
+    let named = CHANNELS.iter().zip(values);
+    named.map(|(name, values)| Words { name: name.to_string(), values }).collect()
+}
+
+/// The samples that channels hold, which are those of [`CHANNELS`] in their order.
+fn making(frame: Frame, start: u32, scale: f64, channels: &[Words]) -> Option<Making> {
+    let Frame { size: [width, height], offset: [x, y], whole } = frame;
+    let ends = |start: u32, length: u32, most: u32| start.checked_add(length).is_some_and(|end| end <= most);
+    if !ends(x, width, whole[0]) || !ends(y, height, whole[1]) {
+        return None;
+    }
+    let (aims, sums) = channels.split_last()?;
+    let window = Window { x, y, width, height };
+    let pixel = |index: usize| {
+        let words: Vec<u32> = sums.iter().map(|sum| sum.values.get(index).copied()).collect::<Option<_>>()?;
+        Pixel::from_words(words.try_into().ok()?)
+    };
+    let pixels = (0..window.pixels()).map(pixel).collect::<Option<Vec<Pixel>>>()?;
+    let within = |aim: &u32| aim.checked_add(start).is_some_and(|end| end <= MOST_SAMPLES);
+    let film = Film::with_pixels(window, scale, pixels).filter(|_| aims.values.iter().all(within))?;
+    Making::resumed(film, start, &aims.values)
+}
+
+/// Of texts and whole numbers, each with its name, and of how the picture came about.
+fn checksum(channels: &Channels, facts: &Facts) -> String {
+    let mut hasher = blake3::Hasher::new();
+    let mut text = |text: &str| {
+        hasher.update(&(text.len() as u64).to_le_bytes());
+        hasher.update(text.as_bytes());
+    };
+    text(&format!("{facts:?}"));
+    for (name, value) in &channels.texts {
+        text(name);
+        text(value);
+    }
+    for words in &channels.words {
+        hasher.update(words.name.as_bytes());
+        for chunk in words.values.chunks(4096) {
+            let bytes: Vec<u8> = chunk.iter().flat_map(|word| word.to_le_bytes()).collect();
+            hasher.update(&bytes);
+        }
+    }
+    hasher.finalize().to_hex().to_string()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,164 @@
+//! What is written is read again, and nothing else is.
+
+use super::*;
+use crate::color::Rgb;
+
+fn identity() -> Identity {
+    let value = |name: &str| {
+        Some(match name {
+            "size" => "40x20".to_string(),
+            "crop" => "4,2,20,10".into(),
+            "background" => "sky".into(),
+            name => format!("{name} of the scene"),
+        })
+    };
+    Identity::from_values(value).expect("every name has a value")
+}
+
+const WINDOW: Window = Window { x: 4, y: 2, width: 20, height: 10 };
+
+/// A film of some samples of made-up light.
+fn film(samples: Range<u32>) -> Film {
+    let pixel = |index: usize| {
+        let mut pixel = Pixel::default();
+        for sample in samples.clone() {
+            let v = f64::from((index as u32 * 7919 + sample * 104_729) % 1000) / 100.0;
+            pixel.add(Rgb::new(v, -0.5 * v, 2.0), 1024.0);
+            pixel.cover(sample % 3 == 0, 0.25);
+        }
+        pixel
+    };
+    let pixels = (0..WINDOW.pixels()).map(pixel).collect();
+    Film::with_pixels(WINDOW, 1024.0, pixels).expect("as many as the window has")
+}
+
+fn saved(share: Option<Share>, samples: Range<u32>, aim: u32) -> Saved {
+    let start = samples.start;
+    let making = Making::resumed(film(samples), start, &[aim; 200]).expect("all pixels are alike");
+    let facts = Facts { stops: Some(0.5), seed: Some(7), ..Facts::unknown() };
+    Saved { subject: Subject { program: "rtc 0".into(), identity: identity(), share }, making, facts }
+}
+
+fn bytes_of(saved: &Saved) -> Vec<u8> {
+    saved.subject.encode(&saved.making, &saved.facts).expect("it can be written")
+}
+
+fn share(index: u32) -> Share {
+    Share { index, of: 4, samples: 18 }
+}
+
+#[test]
+fn what_is_written_is_read() {
+    for saved in [saved(None, 0..5, 9), saved(Some(share(2)), 4..9, 5), saved(None, 0..0, 0)] {
+        let bytes = bytes_of(&saved);
+        assert_eq!(Saved::decode(&bytes), Ok(saved.clone()));
+        assert_eq!(bytes_of(&saved), bytes, "always the same bytes");
+        let (shown, _) = crate::output::decode_exr(&bytes).expect("any program shows it");
+        assert_eq!(shown, picture(saved.making.film(), &saved.subject.identity));
+    }
+}
+
+#[test]
+fn damaged_files_are_refused() {
+    let bytes = bytes_of(&saved(None, 0..3, 3));
+    for length in (0..bytes.len()).step_by(37) {
+        assert!(Saved::decode(&bytes[..length]).is_err(), "cut to {length} bytes");
+    }
+    let mut random = 1u32;
+    for _ in 0..2000 {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        let mut damaged = bytes.clone();
+        let at = random as usize % bytes.len();
+        damaged[at] ^= 1 << (random >> 29);
+        // What is no sum, such as the colours that are shown, may differ.
+        if let Ok(read) = Saved::decode(&damaged) {
+            assert_eq!(read, saved(None, 0..3, 3), "byte {at}");
+        }
+    }
+    for garbage in [&b""[..], b"sphere {}", &[0x76, 0x2f, 0x31, 0x01], &[0xff; 4096]] {
+        assert!(Saved::decode(garbage).is_err());
+    }
+    let plain = encode_exr(&picture(&film(0..1), &identity()), &Facts::unknown(), Channels::default());
+    let why = Saved::decode(&plain.expect("it can be written")).expect_err("it has no sums");
+    assert!(why.to_string().contains("no exact sums"), "{why}");
+}
+
+#[test]
+fn sums_that_cannot_be_are_refused() {
+    let mut words = film(0..2).pixels()[0].words();
+    assert!(Pixel::from_words(words).is_some());
+    words[WORDS - 1] = 0;
+    assert_eq!(Pixel::from_words(words), None, "light without samples");
+    for most in [MOST_SAMPLES + 1, u32::MAX] {
+        let mut none = [0; WORDS];
+        none[WORDS - 1] = most;
+        assert_eq!(Pixel::from_words(none), None);
+    }
+    for word in 0..WORDS - 1 {
+        let mut large = [0; WORDS];
+        (large[word | 1], large[WORDS - 1]) = (0x7fff_ffff, 1);
+        large[9] = if (6..10).contains(&word) { u32::MAX } else { 0 };
+        assert_eq!(Pixel::from_words(large), None, "word {word}");
+    }
+}
+
+fn merged(order: &[u32]) -> Result<Merging, Refused> {
+    let part = |index: u32| {
+        let range = share(index).range();
+        let aim = range.len() as u32;
+        saved(Some(share(index)), range, aim)
+    };
+    let mut merging = Merging::new("first", part(order[0]))?;
+    for index in &order[1..] {
+        merging.add(&format!("part {index}"), &part(*index))?;
+    }
+    Ok(merging)
+}
+
+#[test]
+fn shares_in_any_order_are_the_whole() {
+    let ranges: Vec<Range<u32>> = (1..=4).map(|index| share(index).range()).collect();
+    assert_eq!(ranges, [0..4, 4..9, 9..13, 13..18]);
+    for order in [[1, 2, 3, 4], [4, 1, 3, 2]] {
+        let merging = merged(&order).expect("they go together");
+        assert_eq!((merging.film(), merging.missing()), (&film(0..18), vec![]));
+    }
+    assert_eq!(merged(&[3, 1]).expect("they go together").missing(), [2, 4]);
+}
+
+#[test]
+fn what_does_not_go_together_is_named() {
+    let twice = merged(&[1, 2, 1]).err().expect("one is there twice").to_string();
+    assert_eq!(twice, "is share 1 of 4, and so is `first`");
+    let mut merging = merged(&[1]).expect("one alone is a beginning");
+    let mut add = |other: Saved| merging.add("other", &other).expect_err("it does not fit").to_string();
+    assert!(add(saved(None, 4..9, 5)).contains("it is a checkpoint"));
+    assert!(add(saved(Some(share(2)), 4..7, 5)).contains("not finished: it has 3 of its 5"));
+    assert!(add(saved(Some(share(2)), 5..10, 5)).contains("other samples than its share"));
+    let five = Share { index: 2, of: 5, samples: 18 };
+    assert!(
+        add(saved(Some(five), five.range(), 4))
+            .contains("its share (2/5 of 18 samples, not 2/4 of 18 samples)")
+    );
+    let mut other = saved(Some(share(2)), 4..9, 5);
+    other.subject.program = "rtc 99".into();
+    assert!(add(other).contains("made by `rtc 99`, and this is rtc 0"));
+    let values = |name: &str| {
+        let own = identity();
+        let value = own.entries().find(|(known, _)| *known == name).map(|(_, value)| value.to_string());
+        if name == "seed" {
+            Some("9".into())
+        } else if name == "camera" {
+            Some("".into())
+        } else {
+            value
+        }
+    };
+    let foreign = Identity::from_values(values).expect("every name has a value");
+    let mut other = saved(Some(share(2)), 4..9, 5);
+    other.subject.identity = foreign;
+    let why = add(other);
+    let expected =
+        "it is of another picture, which differs in its camera and its seed (9, not seed of the scene)";
+    assert!(why.contains(expected), "{why}");
+}

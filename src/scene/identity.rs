@@ -1,0 +1,84 @@
+//! What a picture's samples depend on, in parts that have names: so that two pictures that are not the same can be told apart
+//! in words.
+
+use super::{Background, Scene, digest};
+
+/// What the samples of a picture depend on, each with a name and a value. The value of what is large is its hash.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Identity {
+    /// Always the same names in the same order.
+    entries: Vec<(&'static str, String)>,
+}
+
+/// The names of the entries that are hashes.
+const HASHES: [&str; 4] = ["surfaces", "materials", "lights", "camera"];
+/// The names of the others.
+const VALUES: [&str; 7] = ["size", "crop", "seed", "bounces", "indirect", "filter", "background"];
+
+impl Identity {
+    /// That of a window of a scene's picture: x, y, width and height.
+    pub fn new(scene: &Scene, crop: [u32; 4]) -> Identity {
+        let trace = &scene.trace;
+        let hashes = [
+            digest(&scene.primitives),
+            digest(&(&scene.materials, &scene.textures, &scene.images, &scene.frames)),
+            digest(&scene.lights),
+            digest(&scene.camera),
+        ];
+        let [width, height] = trace.size;
+        let [x, y, columns, rows] = crop;
+        let values = [
+            format!("{width}x{height}"),
+            format!("{x},{y},{columns},{rows}"),
+            trace.seed.to_string(),
+            trace.bounces.to_string(),
+            trace.indirect.to_string(),
+            trace.filter.word().to_string(),
+            trace.background.word().to_string(),
+        ];
+        let hashes = HASHES.into_iter().zip(hashes.map(|hash| hash.to_hex().to_string()));
+        Identity { entries: hashes.chain(VALUES.into_iter().zip(values)).collect() }
+    }
+
+    /// One whose values are known by name; none where one is missing.
+    pub fn from_values(value: impl Fn(&str) -> Option<String>) -> Option<Identity> {
+        let names = HASHES.into_iter().chain(VALUES);
+        let entries = names.map(|name| Some((name, value(name)?))).collect::<Option<_>>()?;
+        Some(Identity { entries })
+    }
+
+    /// Every name with its value.
+    pub fn entries(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        self.entries.iter().map(|(name, value)| (*name, value.as_str()))
+    }
+
+    fn value(&self, name: &str) -> &str {
+        self.entries().find(|(known, _)| *known == name).map_or("", |(_, value)| value)
+    }
+
+    /// Width and height of the whole picture in pixels; 0 where they are none.
+    pub fn size(&self) -> [u32; 2] {
+        let (width, height) = self.value("size").split_once('x').unwrap_or_default();
+        [width, height].map(|side| side.parse().unwrap_or(0))
+    }
+
+    /// Whether what nothing covers is transparent.
+    pub fn is_transparent(&self) -> bool {
+        self.value("background") == Background::Transparent.word()
+    }
+
+    /// In what another is different, in words: `its camera` or `its seed (7, not 0)`.
+    pub fn differences(&self, other: &Identity) -> Vec<String> {
+        let pairs = self.entries.iter().zip(&other.entries);
+        let different = pairs.filter(|((_, own), (_, other))| own != other);
+        different
+            .map(|((name, own), (_, other))| match HASHES.contains(name) {
+                true => format!("its {name}"),
+                // What comes from a file may be anything.
+                false => {
+                    format!("its {name} ({}, not {own})", other.escape_debug().take(40).collect::<String>())
+                }
+            })
+            .collect()
+    }
+}

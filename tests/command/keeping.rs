@@ -1,0 +1,222 @@
+//! Samples that are kept and gone on with, shares of them, and when a picture is done.
+
+use super::{Desk, assert_same};
+use std::fs;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// A scene in which paths take a while.
+const ROOM: &str = "
+sphere { radius: 1m, material: dielectric { ior: 1.5 } }
+sphere { at: (1.5, 0, 0.5)m, radius: 40cm, material: metal { roughness: 20% } }
+plane { at: (0, -1, 0)m }
+light { at: (2, 4, 3)m, radius: 30cm, power: 90W }
+";
+
+/// One in which noise is soon gone.
+const CALM: &str = "
+sphere { radius: 1m }
+plane { at: (0, -1, 0)m }
+light { at: (2, 4, 3)m, radius: 1m, power: 90W }
+";
+
+fn desk() -> Desk {
+    let desk = Desk::new();
+    desk.put("room.rt", ROOM);
+    desk
+}
+
+/// Small enough to be over soon.
+fn build(desk: &Desk, rest: &str) -> super::Ended {
+    desk.run(&format!("build room.rt --size 48x36 --quiet {rest}"))
+}
+
+#[test]
+fn shares_put_together_are_the_picture_of_one_machine() {
+    let desk = desk();
+    build(&desk, "--samples 10 -o one.exr -o one.png -j 1").expect(0, &[]);
+    for index in 1..=3 {
+        build(&desk, &format!("--samples 10 --shard {index}/3 -o part{index}.exr")).expect(0, &[]);
+    }
+    desk.run("merge part3.exr part1.exr part2.exr -o all.exr -o all.png")
+        .expect(0, &["all.exr, all.png: 48×36, 10 samples", "of 3 shares"]);
+    assert_same(&desk.path("one.exr"), &desk.path("all.exr"));
+    assert_same(&desk.path("one.png"), &desk.path("all.png"));
+
+    desk.run("merge part1.exr part3.exr -o no.exr").expect(2, &["share 2 of 3 is missing", "--partial"]);
+    desk.run("merge part1.exr -o no.exr").expect(2, &["shares 2, 3 of 3 are missing"]);
+    desk.run("merge --partial part1.exr part3.exr -o look.png")
+        .expect(0, &["share 2 of 3 is missing", "7 samples"]);
+    fs::copy(desk.path("part2.exr"), desk.path("again.exr")).unwrap();
+    desk.run("merge part1.exr part2.exr again.exr -o no.exr")
+        .expect(2, &["`again.exr` is share 2 of 3, and so is `part2.exr`"]);
+    build(&desk, "--samples 10 --shard 2/3 --seed 9 -o foreign.exr").expect(0, &[]);
+    desk.run("merge part1.exr foreign.exr part3.exr -o no.exr")
+        .expect(2, &["`foreign.exr` does not go with `part1.exr`", "its seed (9, not 0)"]);
+    desk.run("merge one.exr -o no.exr").expect(2, &["`one.exr` holds no exact sums"]);
+    desk.run("merge room.rt -o no.exr").expect(2, &["`room.rt` is no EXR"]);
+    fs::write(desk.path("torn.exr"), &desk.get("part2.exr")[..9000]).unwrap();
+    desk.run("merge part1.exr torn.exr part3.exr -o no.exr").expect(2, &["`torn.exr` is no EXR"]);
+    desk.run("merge --partial part1.exr torn.exr part3.exr -o look.png").expect(0, &["it is left out"]);
+    assert!(!desk.names().contains(&"no.exr".to_string()));
+}
+
+#[test]
+fn a_share_needs_a_number_of_samples_and_an_exr() {
+    let desk = desk();
+    let refused = |rest: &str, said: &str| build(&desk, rest).expect(2, &[said]);
+    refused("--shard 1/2 --noise 1% -o a.exr", "`--shard` and `--noise` do not go together");
+    refused("--shard 1/2 --time 1s -o a.exr", "`--shard` and `--time` do not go together");
+    refused("--shard 1/2 --aov depth -o a.exr", "`--shard` and `--aov` do not go together");
+    refused("--shard 1/2 -o a.png", "a share of a picture is an EXR");
+    refused("--shard 1/2", "a share of a picture is an EXR");
+    refused("--shard 1/9 --samples 4 -o a.exr", "cannot be divided into 9 shares");
+    refused("--shard 0/2 -o a.exr", "counted from 1 to 2");
+    refused("--shard auto -o a.exr", "this is none");
+    desk.put("noisy.rt", format!("{ROOM}render {{ noise: 5% }}\n"));
+    desk.run("build noisy.rt --shard 1/2 -o a.exr").expect(2, &["the scene asks for a noise", "--samples N"]);
+
+    let by_slurm = |id: &str, count: &str, max: &str| {
+        let mut command = desk.command("build room.rt --size 8x6 --samples 4 --quiet --shard auto -o a.exr");
+        let variables = [("ID", id), ("COUNT", count), ("MIN", "1"), ("MAX", max)];
+        command.envs(variables.map(|(name, value)| (format!("SLURM_ARRAY_TASK_{name}"), value)));
+        super::ended(command.output().unwrap())
+    };
+    by_slurm("2", "2", "2").expect(0, &[]);
+    desk.run("merge a.exr -o b.exr").expect(2, &["share 1 of 2 is missing"]);
+    by_slurm("2", "1", "2").expect(2, &["auto/N"]);
+}
+
+#[test]
+fn what_was_kept_goes_on_to_the_same_bytes() {
+    let desk = desk();
+    build(&desk, "--samples 40 -o whole.exr").expect(0, &[]);
+    build(&desk, "--samples 7 -o a.exr --checkpoint").expect(0, &[]);
+    assert!(desk.names().contains(&"a.exr.checkpoint".to_string()));
+    // More samples for a picture that was done.
+    build(&desk, "--samples 40 -o a.exr --checkpoint").expect(0, &[]);
+    assert_same(&desk.path("whole.exr"), &desk.path("a.exr"));
+    // Nothing is left to do; and fewer samples than there are cannot be had.
+    build(&desk, "--samples 40 -o a.exr --resume -j 2").expect(0, &[]);
+    assert_same(&desk.path("whole.exr"), &desk.path("a.exr"));
+    build(&desk, "--samples 7 -o a.exr --resume=never --checkpoint=other").expect(0, &[]);
+    build(&desk, "--samples 40 -o a.exr --resume=other").expect(0, &[]);
+    assert_same(&desk.path("whole.exr"), &desk.path("a.exr"));
+    // A picture in the making is a picture.
+    desk.run("develop other -o other.png --quiet").expect(0, &[]);
+
+    let refused =
+        |rest: &str, said: &[&str]| build(&desk, &format!("-o a.exr --resume {rest}")).expect(2, said);
+    refused(
+        "--seed 3",
+        &["cannot go on from `a.exr.checkpoint`", "in its seed (0, not 3)", "--resume=never"],
+    );
+    refused("--crop 0,0,9,9", &["its crop (0,0,48,36, not 0,0,9,9)"]);
+    refused("--samples 40 --shard 1/2", &["its share (all, not 1/2 of 40 samples)"]);
+    refused("--resume=missing", &["--resume"]);
+    build(&desk, "-o a.exr --resume=missing").expect(2, &["cannot read `missing`"]);
+    desk.put("room.rt", ROOM.replace("power: 90W", "power: 91W"));
+    refused("", &["of another picture, which differs in its materials"]);
+    desk.put("room.rt", ROOM.replace("roughness: 20%", "roughness: 21%"));
+    refused("", &["in its materials"]);
+    desk.put("room.rt", ROOM);
+    let mut torn = desk.get("a.exr.checkpoint");
+    let middle = torn.len() / 2;
+    torn[middle] ^= 1;
+    desk.put("a.exr.checkpoint", torn);
+    refused("", &["cannot go on from `a.exr.checkpoint`"]);
+    build(&desk, "-o a.exr --checkpoint=a.exr").expect(2, &["both the picture and its checkpoint"]);
+    build(&desk, "-o - --checkpoint").expect(2, &["--checkpoint=FILE"]);
+    build(&desk, "-o a.exr --checkpoint=room.rt --resume=never").expect(2, &["would be replaced"]);
+    build(&desk, "ball.rt --checkpoint=kept").expect(2, &["several scenes"]);
+    build(&desk, "-o a.exr --checkpoint=no/folder").expect(2, &["there is no folder `no`"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn killed_at_any_moment_it_goes_on_and_the_bytes_are_the_same() {
+    let desk = desk();
+    let arguments =
+        "build room.rt --size 200x150 --samples 100 -o a.exr --checkpoint --checkpoint-every 1spp";
+    for moment in [20, 400, 700, 900] {
+        let mut child = desk.command(arguments).stderr(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(moment));
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    desk.run(arguments).expect(0, &["100 samples"]);
+    desk.run("build room.rt --size 200x150 --samples 100 -o b.exr").expect(0, &[]);
+    assert_same(&desk.path("a.exr"), &desk.path("b.exr"));
+}
+
+#[cfg(unix)]
+#[test]
+fn signals_write_a_checkpoint() {
+    let desk = desk();
+    for signal in ["INT", "TERM"] {
+        let arguments = "build room.rt --size 200x150 --samples 1000000 -o a.png --checkpoint=kept";
+        let mut child = desk.command(arguments).stderr(Stdio::piped()).spawn().unwrap();
+        let id = child.id();
+        let send = |signal: &str| {
+            let kill = Command::new("sh").args(["-c", &format!("kill -{signal} {id}")]).status();
+            assert!(kill.unwrap().success());
+        };
+        // Traced for a while, and its ears open.
+        std::thread::sleep(Duration::from_millis(1500));
+        assert!(!desk.names().contains(&"kept".to_string()), "it is not time yet");
+        send("USR1");
+        let start = Instant::now();
+        while !desk.names().contains(&"kept".to_string()) {
+            assert!(child.try_wait().unwrap().is_none(), "it ended by SIGUSR1");
+            assert!(start.elapsed() < Duration::from_secs(30), "SIGUSR1 wrote no checkpoint");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let before = desk.get("kept");
+        std::thread::sleep(Duration::from_millis(800));
+        send(signal);
+        super::ended(child.wait_with_output().unwrap()).expect(130, &["interrupted"]);
+        assert_ne!(desk.get("kept"), before, "SIG{signal} wrote no checkpoint");
+        desk.run("build room.rt --size 200x150 --samples 1 -o a.exr --resume=kept").expect(0, &["samples"]);
+        for name in ["kept", "a.exr"] {
+            fs::remove_file(desk.path(name)).unwrap();
+        }
+        assert_eq!(desk.names(), ["ball.rt", "room.rt"]);
+    }
+}
+
+#[test]
+fn a_picture_stops_at_the_first_limit_and_says_at_which() {
+    let desk = desk();
+    desk.put("room.rt", CALM);
+    let run = |rest: &str| desk.run(&format!("build room.rt --size 48x36 {rest}"));
+    run("--noise 1.5% -o a.exr -j 1").expect(0, &["noise", "as wanted"]);
+    run("--noise 1.5% -o b.exr -j 2").expect(0, &["as wanted"]);
+    assert_same(&desk.path("a.exr"), &desk.path("b.exr"));
+    let stopped = run("--noise 0.01% --samples 20 -o c.exr");
+    stopped.expect(0, &["20 samples (noise"]);
+    assert!(!stopped.stderr.contains("W0701"), "who limits the samples knows: {}", stopped.stderr);
+    run("--noise 50% --min-samples 40 -o c.exr").expect(0, &["40 samples"]);
+    run("--min-samples 40 --samples 50 -o c.exr").expect(2, &["`--min-samples` is for a noise target"]);
+    let timed = run("--time 300ms -o timed.png");
+    timed.expect(0, &["stopped by the time"]);
+    let (_, after) = timed.stderr.split_once("again by `--samples ").unwrap();
+    let samples = after.split_once('`').unwrap().0;
+    run(&format!("--samples {samples} -o again.png")).expect(0, &[]);
+    assert_same(&desk.path("timed.png"), &desk.path("again.png"));
+    run("--time 1h --samples 3 -o c.exr").expect(0, &["3 samples"]);
+}
+
+#[test]
+fn a_noise_target_that_was_put_aside_goes_on_to_the_same_bytes() {
+    let desk = desk();
+    desk.put("room.rt", CALM);
+    let run = |rest: &str| build(&desk, &format!("--noise 1.5% {rest}")).expect(0, &[]);
+    run("-o whole.exr");
+    // In the middle of a rung, and at its end.
+    for samples in [5, 64, 96, 128] {
+        build(&desk, &format!("--noise 1.5% --samples {samples} -o a.exr --checkpoint=kept")).expect(0, &[]);
+        run("-o a.exr --checkpoint=kept");
+        assert_same(&desk.path("whole.exr"), &desk.path("a.exr"));
+        fs::remove_file(desk.path("kept")).unwrap();
+    }
+}
