@@ -1,13 +1,14 @@
 //! Answers about the picture that is being traced, beside the tracing.
 
 use super::desk::{Desk, Job, Question};
-use super::hub::{Hub, Known, Mask};
+use super::hub::{Frame, Hub, Known, Mask};
 use crate::cli::files::same_name;
 use rt_lang::render::apart::Apart;
 use rt_lang::render::{Control, Prepass, Tracer, Window};
 use rt_lang::scene::{Primitive, PrimitiveId};
 use rt_lang::span::Span;
 use rt_lang::why::Why;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Samples of a pixel that are watched together.
@@ -50,7 +51,9 @@ fn why(
     if pixel[0] >= width || pixel[1] >= height {
         return Err(format!("the picture is {width}×{height}: it has no pixel {},{}", pixel[0], pixel[1]));
     }
-    let frame = hub.frame().filter(|frame| frame.step == 1 && frame.generation == job.generation);
+    let is_traced =
+        |frame: &Arc<Frame>| frame.step == 1 && !frame.remixed && frame.generation == job.generation;
+    let frame = hub.frame().filter(is_traced);
     let most = frame.map_or(1, |frame| frame.samples[0].max(1));
     let mut apart = Apart::new(prepass.scale);
     while apart.samples() < most && (apart.samples() == 0 || start.elapsed() < patience && !desk.is_news()) {
