@@ -57,7 +57,8 @@ fn flat() -> String {
     let (mut text, mut numbers) = (String::new(), Numbers(1));
     for _ in 0..LINES {
         let [x, y, z] = [(); 3].map(|()| numbers.metres());
-        writeln!(text, "sphere {{ at: ({x:.2}, {y:.2}, {z:.2})m, radius: 12mm }}").expect("a string takes all");
+        writeln!(text, "sphere {{ at: ({x:.2}, {y:.2}, {z:.2})m, radius: 12mm }}")
+            .expect("a string takes all");
     }
     text
 }
@@ -130,6 +131,12 @@ fn the_rest(bencher: Bencher) {
     let analysis = analysed(&text);
     let all = 0..text.len();
     bencher.bench(|| {
-        (analysis.symbols(), analysis.folds(), analysis.hints(all.clone()), analysis.colours(), analysis.lenses())
+        (
+            analysis.symbols(),
+            analysis.folds(),
+            analysis.hints(all.clone()),
+            analysis.colours(),
+            analysis.lenses(),
+        )
     });
 }

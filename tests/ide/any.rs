@@ -11,7 +11,8 @@ use rt_lang::span::Span;
 fn ask(text: &str, at: usize) {
     let limits = Limits { things: 1000, steps: 10_000, ..Limits::default() };
     let analysis = analysed(&root(), "any.rt", text);
-    let sound = |span: Span| assert!(analysis.sources.get(span.source).text.get(span.range()).is_some(), "{text}");
+    let sound =
+        |span: Span| assert!(analysis.sources.get(span.source).text.get(span.range()).is_some(), "{text}");
     let all = 0..text.len();
     let (mut last, mut around) = (0, None::<Span>);
     for token in analysis.tokens(all.clone()) {
@@ -43,7 +44,9 @@ fn ask(text: &str, at: usize) {
     let _ = ide::rename(&[], &analysis, at, "renamed");
     for completion in ide::complete(&root(), analysis.source(), at, &limits, &|| false) {
         assert!(text.get(completion.replace.clone()).is_some(), "{text}");
-        assert!(completion.insert.holes.iter().all(|hole| completion.insert.text.get(hole.clone()).is_some()));
+        assert!(
+            completion.insert.holes.iter().all(|hole| completion.insert.text.get(hole.clone()).is_some())
+        );
     }
     ide::signatures(&root(), analysis.source(), at, &limits, &|| false);
 }
@@ -64,7 +67,8 @@ fn typed_texts_hold() {
 
 fn some_text() -> impl Strategy<Value = String> {
     let folders = ["tests/cases/syntax", "tests/cases/diagnostics", "tests/cases/ide"];
-    let all: Vec<String> = folders.iter().flat_map(|folder| texts(folder)).filter(|text| text.len() < 3000).collect();
+    let all: Vec<String> =
+        folders.iter().flat_map(|folder| texts(folder)).filter(|text| text.len() < 3000).collect();
     prop::sample::select(all)
 }
 

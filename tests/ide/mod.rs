@@ -55,7 +55,10 @@ fn questions_are_answered() {
             }
             for (at, question) in marks {
                 let (line, column) = analysis.source().line_column(at);
-                shown.push_str(&format!("== {question} {line}:{column}\n{}\n", shown::at(&analysis, at, &question)));
+                shown.push_str(&format!(
+                    "== {question} {line}:{column}\n{}\n",
+                    shown::at(&analysis, at, &question)
+                ));
             }
             insta::assert_snapshot!("answers", shown);
         });

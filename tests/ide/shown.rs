@@ -41,13 +41,17 @@ pub fn whole(analysis: &Analysis, question: &str) -> String {
             }
             vec![shown]
         }
-        "links" => {
-            analysis.links().iter().map(|link| format!("{}: {}", text(analysis, link.span), link.path)).collect()
-        }
+        "links" => analysis
+            .links()
+            .iter()
+            .map(|link| format!("{}: {}", text(analysis, link.span), link.path))
+            .collect(),
         "lenses" => analysis
             .lenses()
             .iter()
-            .map(|lens| format!("{} {:?} {:?}", place(&analysis.sources, lens.span), lens.action, lens.camera))
+            .map(|lens| {
+                format!("{} {:?} {:?}", place(&analysis.sources, lens.span), lens.action, lens.camera)
+            })
             .collect(),
         "fixes" => analysis
             .fixes(all)
@@ -79,7 +83,10 @@ pub fn at(analysis: &Analysis, at: usize, question: &str) -> String {
         "complete" => {
             let found = ide::complete(&root(), analysis.source(), at, &limits, &|| false);
             let shown = found.iter().take(argument.parse().unwrap_or(12)).map(completion);
-            shown.chain((found.len() > 12).then(|| format!("… {} in all", found.len()))).collect::<Vec<_>>().join("\n")
+            shown
+                .chain((found.len() > 12).then(|| format!("… {} in all", found.len())))
+                .collect::<Vec<_>>()
+                .join("\n")
         }
         "signature" => {
             let found = ide::signatures(&root(), analysis.source(), at, &limits, &|| false);
@@ -92,7 +99,8 @@ pub fn at(analysis: &Analysis, at: usize, question: &str) -> String {
         }
         "define" => match analysis.definition(at) {
             Some(found) => {
-                let (name, whole) = (place(&analysis.sources, found.name), place(&analysis.sources, found.whole));
+                let (name, whole) =
+                    (place(&analysis.sources, found.name), place(&analysis.sources, found.whole));
                 format!("{name} `{}` of {whole}", text(analysis, found.name))
             }
             None => "nowhere".into(),
@@ -105,7 +113,9 @@ pub fn at(analysis: &Analysis, at: usize, question: &str) -> String {
             });
             shown.collect::<Vec<_>>().join("\n")
         }
-        "renamable" => format!("{:?}", analysis.renamable(at).map(|name| name.map(|name| text(analysis, name)))),
+        "renamable" => {
+            format!("{:?}", analysis.renamable(at).map(|name| name.map(|name| text(analysis, name))))
+        }
         "rename" => match ide::rename(&[], analysis, at, argument) {
             Ok(found) => edits(&found),
             Err(why) => format!("no: {why}"),
@@ -120,7 +130,8 @@ pub fn at(analysis: &Analysis, at: usize, question: &str) -> String {
 
 fn symbols(analysis: &Analysis, symbol: &Symbol, depth: usize) -> String {
     let off = if symbol.off { ", off" } else { "" };
-    let mut shown = format!("{:1$}{2} {3:?} {4}{off}", "", 2 * depth, symbol.name, symbol.kind, symbol.detail);
+    let mut shown =
+        format!("{:1$}{2} {3:?} {4}{off}", "", 2 * depth, symbol.name, symbol.kind, symbol.detail);
     for child in &symbol.children {
         shown.push('\n');
         shown.push_str(&symbols(analysis, child, depth + 1));
@@ -154,5 +165,8 @@ fn text(analysis: &Analysis, span: Span) -> String {
 
 fn place(sources: &Sources, span: Span) -> String {
     let place = sources.place_of(span);
-    format!("{}:{}:{}-{}:{}", place.file, place.start.line, place.start.column, place.end.line, place.end.column)
+    format!(
+        "{}:{}:{}-{}:{}",
+        place.file, place.start.line, place.start.column, place.end.line, place.end.column
+    )
 }
