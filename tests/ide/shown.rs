@@ -11,6 +11,9 @@ pub fn whole(analysis: &Analysis, question: &str) -> String {
     let all = 0..analysis.source().text.len();
     let lines: Vec<String> = match question {
         "symbols" => analysis.symbols().iter().map(|symbol| symbols(analysis, symbol, 0)).collect(),
+        "outline" => {
+            ide::outline(analysis.source()).iter().map(|symbol| symbols(analysis, symbol, 0)).collect()
+        }
         "tokens" => analysis
             .tokens(all)
             .iter()
