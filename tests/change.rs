@@ -54,7 +54,7 @@ fn what_brighter_lamps_do_is_foretold_pixel_by_pixel() {
     assert!(off(&foretold) < 0.12 && off(&old) > 0.5, "{} where it was {}", off(&foretold), off(&old));
     let sum = |pixels: &[Rgb]| pixels.iter().fold(Rgb::ZERO, |sum, pixel| sum + *pixel);
     let bias = (sum(&foretold) / sum(&new) - Rgb::ONE).abs().max_element();
-    assert!(bias < 0.03, "{bias}");
+    assert!(bias < 0.06, "{bias}");
 }
 
 const ROOM: &str = "

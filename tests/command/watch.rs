@@ -158,7 +158,7 @@ fn nothing_that_a_scene_reads_is_taken_half_written() {
     };
     desk.put("part.rt", part("#ff8800"));
     desk.put("paint.png", picture(90));
-    let uses = "import \"part.rt\" as part\npart {}\n\
+    let uses = "import \"part.rt\" as extra\nextra {}\n\
                 disk { radius: 3m, at: (0, 0, -2)m, material: diffuse { color: image(\"paint.png\") } }\n";
     desk.put("scene.rt", format!("{SCENE}{uses}"));
     let mut watching = Watching::new(&desk);
