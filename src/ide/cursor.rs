@@ -206,8 +206,8 @@ impl<'t> Cursor<'t> {
         let last_text = last.map_or("", |(_, range)| &self.text[range.clone()]);
         let touches = last.is_some_and(|(_, range)| range.end == self.word.start);
         let field = (self.piece(1) == ":").then(|| self.piece(0).to_string());
-        if touches && last.is_some_and(|(lexeme, _)| *lexeme == Lexeme::Number) || touches && last_text == ")"
-        {
+        let is_number = last.is_some_and(|(lexeme, _)| *lexeme == Lexeme::Number);
+        if touches && (is_number || last_text == ")") {
             return Spot::Unit(field);
         }
         if last_text == "." {

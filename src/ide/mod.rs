@@ -2,8 +2,8 @@
 //!
 //! An [`Analysis`] is what one text means together with all it imports, and never changes: an edit makes another one, by
 //! [`crate::analyse`], which runs the stages that [`crate::compile`] runs. Most questions are about the text that was analysed; what they
-//! point at may lie in another file. Questions that are asked while a statement is being typed, [`complete`] and
-//! [`signatures`], take the text itself, and so does [`outline`], which needs no analysis. [`references`] and [`rename`] look through several analyses, since who
+//! point at may lie in another file. Questions that are asked while a statement is being typed, [`complete()`] and
+//! [`signatures`], take the text itself, and so does [`outline`], which needs no analysis. [`references`] and [`rename()`] look through several analyses, since who
 //! uses a file is not known in it.
 //!
 //! No text, offset or range makes a question panic: what lies outside a text is moved to its end.
