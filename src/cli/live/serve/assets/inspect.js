@@ -84,7 +84,7 @@ function told(why) {
   return [
     element("dl", { class: "numbers" },
       ...entry("pixel", `${why.pixel[0]}, ${why.pixel[1]}`),
-      ...entry("radiance", `${[r, g, b].map((v) => figures(v)).join("  ")} W/m²`, { "data-radiance": JSON.stringify(why.radiance) }),
+      ...entry("radiance", `${[r, g, b].map((v) => figures(v)).join("  ")} W/(m²·sr)`, { "data-radiance": JSON.stringify(why.radiance) }),
       ...entry("error", why.error == null ? "unknown yet" : `± ${figures(why.error, 3)}${relative}`),
       ...entry("samples", count(why.samples)),
       ...(why.coverage < 1 ? entry("covered", percent(why.coverage)) : []),

@@ -94,5 +94,5 @@ export function showUnder(view, pixel) {
   if (!pixel || !view.film) return say(part("under"), "");
   const { radiance, error } = view.film.at(...pixel);
   const noise = Number.isFinite(error) ? ` ± ${figures(error, 2)}` : "";
-  say(part("under"), `${pixel[0]}, ${pixel[1]}   ${radiance.map((v) => figures(v)).join("  ")}${noise} W/m²`);
+  say(part("under"), `${pixel[0]}, ${pixel[1]}   ${radiance.map((v) => figures(v)).join("  ")}${noise} W/(m²·sr)`);
 }

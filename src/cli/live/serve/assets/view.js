@@ -47,6 +47,8 @@ export class View {
     this.compare = "split";
     this.flipped = false;
     this.split = 0.5;
+    /// Whether the difference of the two is on the plate.
+    this.differs = false;
     this.plates = { now: new Plate(), pinned: new Plate() };
     this.zoom = 1;
     this.origin = [0, 0];
@@ -102,7 +104,7 @@ export class View {
 
   developNow(all) {
     const paint = painter(this.look);
-    const differs = this.pinned && this.compare === "difference" && this.pinned.fits(this.film.size, this.film.step);
+    const differs = this.compare === "difference" && this.pinned !== null && this.film.isLike(this.pinned);
     const subtract = (film, area, out) => difference(film, this.pinned, area, out, this.look.stops);
     this.plates.now.develop(this.film, differs ? subtract : paint, all || differs !== this.differs);
     if (this.pinned && !differs) this.plates.pinned.develop(this.pinned, paint, all);
