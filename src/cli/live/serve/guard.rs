@@ -60,6 +60,7 @@ const ASSETS: &[Asset] = assets! {
     "develop.js" SCRIPT,
     "element.js" SCRIPT,
     "film.js" SCRIPT,
+    "find.js" SCRIPT,
     "hand.js" SCRIPT,
     "inspect.js" SCRIPT,
     "keys.js" SCRIPT,
@@ -68,6 +69,7 @@ const ASSETS: &[Asset] = assets! {
     "said.js" SCRIPT,
     "socket.js" SCRIPT,
     "view.js" SCRIPT,
+    "window.js" SCRIPT,
 };
 
 impl Guard {

@@ -183,7 +183,7 @@ impl Hearer {
             }
             Ok(Heard::Light { id, file, line, column }) => {
                 let request = |reply| Request::Light { file, line, column, reply };
-                self.ask(request, move |mask| lit(id, mask.flatten())).await?;
+                self.ask(request, move |answer| lit(id, answer)).await?;
             }
             Ok(Heard::Open { file, line, column }) => {
                 let files = &hub.status().files;
@@ -258,8 +258,12 @@ fn why(id: u32, answer: Option<Result<Known, String>>) -> Value {
 }
 
 /// The mask follows where there is one.
-fn lit(id: u32, mask: Option<Mask>) -> Answer {
-    let mut answer = vec![text(&json!({ "type": "light", "id": id, "ok": mask.is_some() }))];
-    answer.extend(mask.map(|mask| Message::Binary(tiles::mask(id, &mask).into())));
-    answer
+fn lit(id: u32, answer: Option<Result<Mask, String>>) -> Answer {
+    match answer.unwrap_or_else(|| Err(NO_ANSWER.into())) {
+        Ok(mask) => vec![
+            text(&json!({ "type": "light", "id": id, "ok": true })),
+            Message::Binary(tiles::mask(id, &mask).into()),
+        ],
+        Err(error) => vec![text(&json!({ "type": "light", "id": id, "ok": false, "error": error }))],
+    }
 }

@@ -89,8 +89,9 @@ function plural(n, word) {
   return `${n} ${word}${n === 1 ? "" : "s"}`;
 }
 
-/// The pixel under the pointer.
-export function showUnder(view, pixel) {
+/// A note, or the pixel under the pointer.
+export function showUnder(view, pixel, note = null) {
+  if (note) return say(part("under"), note);
   if (!pixel || !view.film) return say(part("under"), "");
   const { radiance, error } = view.film.at(...pixel);
   const noise = Number.isFinite(error) ? ` ± ${figures(error, 2)}` : "";

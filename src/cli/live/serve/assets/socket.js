@@ -63,7 +63,7 @@ export class Link {
         return this.finish(message);
       case "light":
         // Its mask follows.
-        if (!message.ok) this.answer(message.id, null);
+        if (!message.ok) this.answer(message.id, message);
         return;
       case "why":
       case "wrote":

@@ -186,6 +186,34 @@ export class View {
     return at.map((v, i) => (v - this.origin[i]) / this.zoom);
   }
 
+  /// The pixel in the middle of the picture.
+  middle() {
+    return this.film.size.map((side) => side >> 1);
+  }
+
+  /// The nearest pixel of the picture.
+  inside(pixel) {
+    return pixel.map((v, i) => Math.min(Math.max(v, 0), this.film.size[i] - 1));
+  }
+
+  /// Moves the picture as far as it takes to see a pixel.
+  reveal(pixel) {
+    const margin = 8 * devicePixelRatio;
+    const sides = [this.stage.width, this.stage.height];
+    const by = pixel.map((v, i) => {
+      const at = this.origin[i] + (v + 0.5) * this.zoom;
+      return Math.min(Math.max(at, margin), sides[i] - margin) - at;
+    });
+    if (by.some((v) => v !== 0)) this.pan(...by);
+  }
+
+  /// Draws a window, or none.
+  frame(window) {
+    if (String(window) === String(this.window)) return;
+    this.window = window;
+    this.draw();
+  }
+
   /// Where a column of the picture stands on the stage, in its own pixels.
   columnAt(share) {
     return (this.origin[0] + share * (this.film?.size[0] ?? 0) * this.zoom) / devicePixelRatio;
