@@ -118,7 +118,7 @@ fn values(why: &Why) -> String {
         // Writing to a string does not fail.
         let _ = writeln!(text, "{head:<11} {words}");
     };
-    row("radiance", format!("{} W/m² (red, green, blue)", triple(why.radiance)));
+    row("radiance", format!("{} W/(m²·sr) (red, green, blue)", triple(why.radiance)));
     if let Some(error) = why.error {
         let luminance = rt_lang::color::luminance(why.radiance.into());
         let share =

@@ -24,6 +24,9 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Instant;
 
+/// What is said where a picture is asked about before the first.
+const NO_PICTURE: &str = "there is no picture yet";
+
 /// Reads, compiles, and decides.
 pub struct Engine {
     scene: PathBuf,
@@ -137,11 +140,11 @@ impl Engine {
             }
             Request::Why { x, y, patient, reply } => match self.job {
                 Some(_) => self.desk.ask(Question::Why { pixel: [x, y], patient, reply }),
-                None => drop(reply.send(Err("there is no picture yet".into()))),
+                None => drop(reply.send(Err(NO_PICTURE.into()))),
             },
             Request::Light { file, line, column, reply } => match self.job {
                 Some(_) => self.desk.ask(Question::Light { file, place: [line, column], reply }),
-                None => drop(reply.send(None)),
+                None => drop(reply.send(Err(NO_PICTURE.into()))),
             },
         }
     }

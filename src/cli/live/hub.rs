@@ -178,7 +178,7 @@ pub struct Param {
     pub ty: String,
     /// The words above it.
     pub doc: Option<String>,
-    /// The expression in the file.
+    /// The expression in the file; empty where the file has no such param any more.
     pub default: String,
     /// The expression in force.
     pub value: String,
@@ -264,10 +264,10 @@ pub enum Request {
         file: String,
         /// From 1.
         line: u32,
-        /// From 1.
+        /// From 1; 0 is the line's first word.
         column: u32,
-        /// Nothing where nothing stands there.
-        reply: Reply<Option<Mask>>,
+        /// The pixels, or why there are none.
+        reply: Reply<Result<Mask, String>>,
     },
 }
 
