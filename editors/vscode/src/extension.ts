@@ -82,7 +82,7 @@ async function show(answer: unknown, uri: unknown): Promise<void> {
   const found = typeof answer === "object" && answer !== null ? (answer as { url?: unknown }).url : answer;
   if (typeof found !== "string") return;
   const page = vscode.Uri.parse(found);
-  if (setting("preview.in", "beside") === "browser") {
+  if (setting<string>("preview.in", "beside") === "browser") {
     await vscode.env.openExternal(page);
   } else {
     await previews.show(page, typeof uri === "string" ? uri : found);
@@ -107,7 +107,7 @@ async function build(): Promise<void> {
 }
 
 function program(): string {
-  return setting("path", "rtc");
+  return setting<string>("path", "rtc");
 }
 
 function setting<T>(name: string, otherwise: T): T {
