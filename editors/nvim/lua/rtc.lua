@@ -78,6 +78,7 @@ function M.install_parser(folder)
   local here = vim.fs.dirname(vim.fs.dirname(vim.fs.dirname(debug.getinfo(1, 'S').source:sub(2))))
   local source = vim.fs.joinpath(folder or vim.fs.joinpath(here, 'tree-sitter-rt'), 'src')
   local target = vim.fs.joinpath(vim.fn.stdpath('data'), 'site', 'parser')
+  local parser = vim.fs.joinpath(target, 'rt.so')
   vim.fn.mkdir(target, 'p')
   local done = vim
     .system({
@@ -89,19 +90,20 @@ function M.install_parser(folder)
       vim.fs.joinpath(source, 'parser.c'),
       vim.fs.joinpath(source, 'scanner.c'),
       '-o',
-      vim.fs.joinpath(target, 'rt.so'),
+      parser,
     }, { text = true })
     :wait()
   if done.code ~= 0 then
     vim.notify('rtc: the parser does not compile: ' .. done.stderr, vim.log.levels.ERROR)
     return false
   end
+  vim.treesitter.language.add('rt', { path = parser })
   for _, buffer in ipairs(vim.api.nvim_list_bufs()) do
     if vim.bo[buffer].filetype == 'rt' then
       vim.treesitter.start(buffer, 'rt')
     end
   end
-  vim.notify('rtc: the parser is in ' .. target)
+  vim.notify('rtc: the parser is ' .. parser)
   return true
 end
 

@@ -21,8 +21,8 @@ syntax match rtInclude "\<as\>"
 syntax match rtConstant "\<\%(black\|white\|gray\|grey\|silver\|red\|green\|blue\|yellow\|cyan\|magenta\|orange\|purple\|brown\|pink\)\>"
 " made from: words, between \%( and \), joined by \|
 syntax match rtConstant ":\s*\zs\%(agx\|auto\|box\|gaussian\|mitchell\|neutral\|none\|sky\|tent\|transparent\)\>"
-" made from: types, between \%( and \), joined by \|
-syntax match rtType "\%(number\|int\|bool\|text\|color\|texture\|material\|thing\|transform\|point\|vector\|length\|angle\|power\|radiance\|temperature\|area\)\s*\[*\zs\<\%(\)\>\ze\]*\s*\%(=\|,\|)\)"
+" made from: types, between \<\%( and \), joined by \|
+syntax match rtType "\%(:\|->\)\s*\[*\zs\<\%(number\|int\|bool\|text\|color\|texture\|material\|thing\|transform\|point\|vector\|length\|angle\|power\|radiance\|temperature\|area\)\>\ze\]*\s*\%(=\|,\|)\)"
 syntax match rtFunction "\<\h\w*\>\ze("
 " made from: functions, between \%( and \), joined by \|
 syntax match rtBuiltin "\<\%(sin\|cos\|tan\|asin\|acos\|atan2\|sqrt\|abs\|min\|max\|clamp\|mix\|floor\|ceil\|round\|mod\|pow\|exp\|log\|length\|normalize\|dot\|cross\|range\|linspace\|rand\|bounds\|rgb\|srgb\|hsv\|blackbody\|checker\|stripes\|noise\|image\|table\|scale\|turn\|move\|matrix\)\>\ze("

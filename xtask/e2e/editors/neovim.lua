@@ -87,7 +87,7 @@ step('what is laid out is indented so', function()
   local garden = table.concat(vim.fn.readfile(root .. '/examples/garden/garden.rt'), '\n') .. '\n'
   open('garden-copy.rt', garden)
   vim.cmd('silent %left | silent normal! gg=G')
-  check(text() == garden, 'garden.rt is indented otherwise:\n' .. vim.text.diff(garden, text()))
+  check(text() == garden, 'garden.rt is indented otherwise:\n' .. vim.diff(garden, text()))
   vim.cmd('bwipeout!')
 end)
 
