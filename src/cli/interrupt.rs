@@ -59,10 +59,11 @@ impl Interrupt {
     }
 
     fn end(&self, terminal: Terminal) {
-        if let Some(control) = &*lock(&self.control) {
+        let control = lock(&self.control).clone();
+        if let Some(control) = control {
             control.cancel();
+            std::thread::sleep(GRACE);
         }
-        std::thread::sleep(GRACE);
         // Held until the process is gone, so that nobody makes or moves a file from here on.
         let unfinished = lock(&self.unfinished);
         for path in unfinished.iter() {

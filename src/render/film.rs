@@ -6,6 +6,7 @@ use crate::color::{Rgb, luminance};
 use crate::develop::display;
 use crate::math::exp2;
 use crate::scene::Tonemap;
+use rayon::prelude::*;
 
 /// Samples a pixel may hold without any sum overflowing.
 pub const MOST_SAMPLES: u32 = 1 << 20;
@@ -213,7 +214,7 @@ impl Film {
     /// the mean less and plus its standard error, in the channel where it is greatest, as a share of white.
     pub fn noise(&self, stops: f64, tonemap: Tonemap) -> f64 {
         let mut errors: Vec<f64> =
-            self.pixels.iter().map(|pixel| self.shown_error(pixel, stops, tonemap)).collect();
+            self.pixels.par_iter().map(|pixel| self.shown_error(pixel, stops, tonemap)).collect();
         if errors.is_empty() {
             return 0.0;
         }

@@ -108,15 +108,19 @@ pub struct Tracer<'s> {
     /// How far away things are from the camera in metres, most typically.
     size: f64,
     caustics: Caustics,
+    /// Whether caustics were looked for.
+    aware: bool,
     sharing: Sharing,
     level: Level,
     keeps_structure: bool,
 }
 
-/// What rays are tested against, kept for another scene: see [`Tracer::with`].
+/// What rays are tested against, and what photons found, kept for another scene: see [`Tracer::at_once`].
 pub struct Structure {
     surfaces: Surfaces,
     materials: Vec<Material>,
+    /// With the hash of the scene that they are of.
+    caustics: Option<(blake3::Hash, Caustics)>,
 }
 
 /// A finished film.
@@ -182,23 +186,26 @@ pub const PASS: u32 = 64;
 impl<'s> Tracer<'s> {
     /// Builds what tracing needs: hierarchy, tables of lights and coats.
     pub fn new(scene: &'s Scene) -> Tracer<'s> {
-        Tracer::with(scene, None)
+        let mut tracer = Tracer::at_once(scene, None);
+        tracer.caustics = Caustics::new(&tracer, &Control::new()).unwrap_or_default();
+        tracer.aware = true;
+        tracer
     }
 
-    /// The same with the structure of an earlier scene, if that fits: see [`Tracer::keeps_structure`].
-    pub fn with(scene: &'s Scene, structure: Option<Structure>) -> Tracer<'s> {
-        Tracer::at_once(scene, structure).with_caustics()
-    }
-
-    /// The same in less time, for a first look: caustics are left to luck until [`Tracer::with_caustics`].
+    /// The same in less time, for a first look: caustics are left to luck until [`Tracer::find_caustics`]. Keeps of the
+    /// structure of an earlier scene what fits: see [`Tracer::keeps_structure`].
     pub fn at_once(scene: &'s Scene, structure: Option<Structure>) -> Tracer<'s> {
         let size = size(scene);
         let space = Space::new(scene.camera.position, size);
         let unit = radiance_unit(peak(scene));
-        let kept = structure.and_then(|kept| kept.surfaces.kept(&kept.materials, scene, &space));
+        let (mut kept, mut caustics) = (None, None);
+        if let Some(before) = structure {
+            kept = before.surfaces.kept(&before.materials, scene, &space);
+            caustics = before.caustics.filter(|(hash, _)| *hash == scene.hash());
+        }
         let keeps_structure = kept.is_some();
         let surfaces = kept.unwrap_or_else(|| Surfaces::new(scene, &space));
-        Tracer {
+        let mut tracer = Tracer {
             scene,
             materials: Materials::new(scene, &surfaces, unit),
             lights: Lights::new(scene, &surfaces, &space, unit),
@@ -208,17 +215,32 @@ impl<'s> Tracer<'s> {
             unit,
             dielectrics: Dielectrics::new(scene),
             size,
-            caustics: Caustics::default(),
+            aware: caustics.is_some(),
+            caustics: caustics.map(|(_, caustics)| caustics).unwrap_or_default(),
             sharing: Sharing::Both,
             level: Level::best(),
             keeps_structure,
-        }
+        };
+        tracer.aware |= !caustic::may_be(&tracer);
+        tracer
     }
 
-    /// Sends the photons by which caustics are looked for.
-    pub fn with_caustics(mut self) -> Tracer<'s> {
-        self.caustics = Caustics::new(&self);
-        self
+    /// Whether it is known where caustics come from: see [`Tracer::find_caustics`].
+    pub fn knows_caustics(&self) -> bool {
+        self.aware
+    }
+
+    /// Sends the photons by which caustics are looked for, unless that was done.
+    ///
+    /// # Errors
+    ///
+    /// If the control cancels.
+    pub fn find_caustics(&mut self, control: &Control) -> Result<(), Cancelled> {
+        if !self.aware {
+            self.caustics = Caustics::new(self, control)?;
+            self.aware = true;
+        }
+        Ok(())
     }
 
     /// Whether surfaces are where they were in the scene before, so that its structure could be kept.
@@ -228,7 +250,8 @@ impl<'s> Tracer<'s> {
 
     /// What rays are tested against, for another scene that may have its surfaces in the same places.
     pub fn into_structure(self) -> Structure {
-        Structure { surfaces: self.surfaces, materials: self.scene.materials.clone() }
+        let caustics = self.aware.then(|| (self.scene.hash(), self.caustics));
+        Structure { surfaces: self.surfaces, materials: self.scene.materials.clone(), caustics }
     }
 
     /// Leaves caustics to luck: the same picture on average, but for light of points, which luck never finds.
@@ -241,7 +264,7 @@ impl<'s> Tracer<'s> {
     pub fn on(self, level: Level) -> Tracer<'s> {
         let mut tracer = Tracer { level, ..self };
         if !tracer.caustics.is_empty() {
-            tracer.caustics = Caustics::new(&tracer);
+            tracer.caustics = Caustics::new(&tracer, &Control::new()).unwrap_or_default();
         }
         tracer
     }
@@ -324,6 +347,10 @@ impl<'s> Tracer<'s> {
             let traced: Vec<Vec<Pixel>> = tiles
                 .par_iter()
                 .map(|tile| {
+                    // A tile asks only after its first pixel, and there may be thousands.
+                    if control.is_cancelled() {
+                        return Vec::new();
+                    }
                     let mut jobs = Tile::new(*tile, pass.clone(), scale, self.unit, control);
                     self.trace(&view, &mut jobs);
                     jobs.pixels

@@ -1,7 +1,7 @@
 //! Answers about the picture that is being traced, beside the tracing.
 
 use super::desk::{Desk, Job, Question};
-use super::hub::{Hub, Mask};
+use super::hub::{Hub, Known, Mask};
 use crate::cli::files::same_name;
 use rt_lang::render::apart::Apart;
 use rt_lang::render::{Control, Prepass, Tracer, Window};
@@ -11,10 +11,12 @@ use rt_lang::why::Why;
 use std::time::{Duration, Instant};
 
 /// Samples of a pixel that are watched together.
-const TOGETHER: u32 = 64;
+const TOGETHER: u32 = 16;
 /// Rows that are looked at together.
 const BAND: u32 = 64;
-/// How long a pixel is taken apart, at least its first [`TOGETHER`] samples.
+/// How long a pixel is taken apart for who wants to know at once, and for who is patient; at least its first
+/// [`TOGETHER`] samples.
+const AT_ONCE: Duration = Duration::from_millis(2);
 const PATIENCE: Duration = Duration::from_millis(200);
 
 /// Answers questions about a job until there is a new one.
@@ -23,8 +25,9 @@ pub fn answer_all(desk: &Desk, hub: &Hub, tracer: &Tracer, prepass: &Prepass, jo
     while let Some(question) = desk.question() {
         // Whoever asked may be gone.
         match question {
-            Question::Why { pixel, reply } => {
-                drop(reply.send(why(desk, hub, tracer, prepass, job, pixel)));
+            Question::Why { pixel, patient, reply } => {
+                let patience = if patient { PATIENCE } else { AT_ONCE };
+                drop(reply.send(why(desk, hub, (tracer, prepass), job, pixel, patience)));
             }
             Question::Light { file, place, reply } => {
                 drop(reply.send(light(desk, tracer, job, &mut seen, &file, place)));
@@ -37,11 +40,11 @@ pub fn answer_all(desk: &Desk, hub: &Hub, tracer: &Tracer, prepass: &Prepass, jo
 fn why(
     desk: &Desk,
     hub: &Hub,
-    tracer: &Tracer,
-    prepass: &Prepass,
+    (tracer, prepass): (&Tracer, &Prepass),
     job: &Job,
     pixel: [u32; 2],
-) -> Result<serde_json::Value, String> {
+    patience: Duration,
+) -> Result<Known, String> {
     let start = Instant::now();
     let [width, height] = job.scene().trace.size;
     if pixel[0] >= width || pixel[1] >= height {
@@ -50,12 +53,13 @@ fn why(
     let frame = hub.frame().filter(|frame| frame.step == 1 && frame.generation == job.generation);
     let most = frame.map_or(1, |frame| frame.samples[0].max(1));
     let mut apart = Apart::new(prepass.scale);
-    while apart.samples() < most && (apart.samples() == 0 || start.elapsed() < PATIENCE && !desk.is_news()) {
+    while apart.samples() < most && (apart.samples() == 0 || start.elapsed() < patience && !desk.is_news()) {
         let done = apart.samples();
         tracer.take_apart(pixel, done..most.min(done + TOGETHER), &mut apart);
     }
     let provenance = job.loaded.compiled.provenance(&job.loaded.sources).ok_or("the scene has errors")?;
-    serde_json::to_value(Why::new(pixel, &apart, provenance)).map_err(|error| error.to_string())
+    let why = serde_json::to_value(Why::new(pixel, &apart, provenance)).map_err(|error| error.to_string())?;
+    Ok(Known { why, more: apart.samples() < most })
 }
 
 /// Which pixels show what stands at a place of a file, or what is made of a material that does.

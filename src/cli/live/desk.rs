@@ -1,6 +1,6 @@
 //! Where the thread that reads leaves work for the thread that traces.
 
-use super::hub::{Mask, Reply};
+use super::hub::{Known, Mask, Reply};
 use crate::cli::scene::Loaded;
 use rt_lang::render::{Control, Window};
 use rt_lang::scene::Scene;
@@ -34,8 +34,10 @@ pub enum Question {
     Why {
         /// Column and row.
         pixel: [u32; 2],
+        /// Whether to take all samples that there are.
+        patient: bool,
         /// The answer, or why there is none.
-        reply: Reply<Result<serde_json::Value, String>>,
+        reply: Reply<Result<Known, String>>,
     },
     /// Which pixels show what stands at a place of a file.
     Light {

@@ -129,8 +129,8 @@ impl Engine {
                     }
                 });
             }
-            Request::Why { x, y, reply } => match self.job {
-                Some(_) => self.desk.ask(Question::Why { pixel: [x, y], reply }),
+            Request::Why { x, y, patient, reply } => match self.job {
+                Some(_) => self.desk.ask(Question::Why { pixel: [x, y], patient, reply }),
                 None => drop(reply.send(Err("there is no picture yet".into()))),
             },
             Request::Light { file, line, column, reply } => match self.job {

@@ -202,6 +202,15 @@ impl Mask {
 /// Where an answer goes. Whoever asked may be gone.
 pub type Reply<T> = oneshot::Sender<T>;
 
+/// Why a pixel looks as it does.
+#[derive(Debug, Serialize)]
+pub struct Known {
+    /// As `rtc why --json` has it.
+    pub why: serde_json::Value,
+    /// Whether more samples would tell more.
+    pub more: bool,
+}
+
 /// What may be asked of the engine.
 #[derive(Debug)]
 pub enum Request {
@@ -225,14 +234,16 @@ pub enum Request {
     Crop(Option<[u32; 4]>),
     /// Lets paths wait, or go on.
     Pause(bool),
-    /// Why a pixel looks as it does, as `rtc why --json` has it.
+    /// Why a pixel looks as it does.
     Why {
         /// Column.
         x: u32,
         /// Row.
         y: u32,
+        /// Whether to take all samples that there are, and not only what can be told at once.
+        patient: bool,
         /// The answer, or why there is none.
-        reply: Reply<Result<serde_json::Value, String>>,
+        reply: Reply<Result<Known, String>>,
     },
     /// Which pixels show what stands at a place of a file.
     Light {
@@ -250,13 +261,13 @@ pub enum Request {
 /// The place where engine and pages meet.
 #[derive(Debug)]
 pub struct Hub {
-    known: Mutex<Known>,
+    known: Mutex<Newest>,
     version: watch::Sender<u64>,
     requests: mpsc::Sender<Request>,
 }
 
 #[derive(Debug, Default)]
-struct Known {
+struct Newest {
     frame: Option<Arc<Frame>>,
     status: Arc<Status>,
 }
@@ -310,7 +321,7 @@ impl Hub {
         self.version.send_modify(|version| *version += 1);
     }
 
-    fn lock(&self) -> MutexGuard<'_, Known> {
+    fn lock(&self) -> MutexGuard<'_, Newest> {
         // Each of the two is replaced as a whole.
         self.known.lock().unwrap_or_else(PoisonError::into_inner)
     }

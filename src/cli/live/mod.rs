@@ -57,8 +57,10 @@ use writer::Writer;
 /// Follows a scene until the process is asked to end.
 pub fn run(arguments: &Watch, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
     let targets = outputs(arguments)?;
-    let threads = ThreadPoolBuilder::new().num_threads(arguments.taking.threads.unwrap_or(0)).build();
-    let threads = threads.map_err(|error| Problem::new(format!("cannot start the threads: {error}")))?;
+    let threads = || ThreadPoolBuilder::new().num_threads(arguments.taking.threads.unwrap_or(0));
+    let problem = |error| Problem::new(format!("cannot start the threads: {error}"));
+    let front = threads().build().map_err(problem)?;
+    let threads = threads().start_handler(|_| step_back()).build().map_err(problem)?;
     let (hub, requests) = Hub::new();
     let desk = Arc::new(Desk::default());
     let names = match targets.as_slice() {
@@ -75,7 +77,8 @@ pub fn run(arguments: &Watch, terminal: Terminal, interrupt: &Interrupt) -> Resu
         desk: desk.clone(),
         hub: hub.clone(),
         writer,
-        threads: Arc::new(threads),
+        threads,
+        front,
         terminal,
         quiet: arguments.quiet,
         names,
@@ -90,6 +93,17 @@ pub fn run(arguments: &Watch, terminal: Terminal, interrupt: &Interrupt) -> Resu
     let watcher = Watcher::new(arguments.poll.map(Duration::from_millis), move || told.ask(Request::Look))?;
     let reader = Reader::new(&arguments.scene, &arguments.reading, arguments.taking.overrides(), &own);
     Engine::new(arguments, reader, watcher, desk, hub, interrupt.clone(), terminal).run(&requests)
+}
+
+/// Lets a thread work only where no other wants to: editors, browsers and compilers are not to wait for a picture.
+fn step_back() {
+    #[cfg(target_os = "linux")]
+    {
+        /// About a tenth of the share of others.
+        const NICENESS: i32 = 10;
+        // Where it is refused all is slower, and works. For Linux a process is a thread.
+        let _ = rustix::process::setpriority_process(None, NICENESS);
+    }
 }
 
 /// Serves the page, and says where.

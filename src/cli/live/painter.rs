@@ -24,6 +24,8 @@ use std::time::{Duration, Instant};
 
 /// A first look takes one pixel of so many across and down.
 const LOOK: u32 = 8;
+/// Pictures of up to so many pixels are seen whole sooner than it is known where caustics come from.
+const SOON: u64 = 1 << 18;
 /// Between two pictures that are shown so many times as long is traced as it takes to show one.
 const SHARE: u32 = 10;
 
@@ -35,8 +37,10 @@ pub struct Painter {
     pub hub: Arc<Hub>,
     /// Where they are written, if they are.
     pub writer: Option<Writer>,
-    /// What traces.
-    pub threads: Arc<ThreadPool>,
+    /// What traces, behind all else that the machine does.
+    pub threads: ThreadPool,
+    /// What does what somebody waits for.
+    pub front: ThreadPool,
     /// What is said.
     pub terminal: Terminal,
     /// Whether to say only what is wrong.
@@ -77,13 +81,21 @@ struct Mix {
 /// A picture that was mixed anew is shown until the traced one has so many samples a pixel.
 const ENOUGH: u32 = 16;
 
+/// A picture of one pixel in so many, to look at until there is a better one.
+#[derive(Default)]
+struct Look {
+    step: u32,
+    /// As [`Frame::pixels`] has them.
+    pixels: Vec<[f32; 5]>,
+}
+
 /// Samples that were taken of a scene.
 struct Canvas {
     film: Film,
     prepass: Prepass,
     work: Work,
     /// What pixels show that have no sample.
-    look: Vec<[f32; 5]>,
+    look: Look,
     /// How long tracing took.
     time: Duration,
     /// The noise when all pixels had a power of two of samples last.
@@ -101,7 +113,7 @@ impl Painter {
         let mut left = Left::default();
         loop {
             let job = self.desk.take();
-            left = self.threads.install(|| Painting::new(self, &job, left).run());
+            left = Painting::new(self, &job, left).run();
             left.job = Some(job);
         }
     }
@@ -130,32 +142,43 @@ impl<'a> Painting<'a> {
     }
 
     fn run(mut self) -> Left {
-        let tracer = Tracer::at_once(self.scene, self.left.structure.take());
+        let Painter { front, threads, desk, hub, .. } = self.painter;
+        let mut tracer = front.install(|| Tracer::at_once(self.scene, self.left.structure.take()));
         let canvas = self.left.canvas.take().and_then(|canvas| self.keep(canvas));
         if canvas.is_none() {
-            self.remix();
+            front.install(|| self.remix());
         }
         let remixed = self.mixing;
         self.say_reason(canvas.is_some(), tracer.keeps_structure(), remixed);
-        let prepass = canvas.as_ref().map_or_else(|| tracer.prepass(), |canvas| canvas.prepass);
         let fresh = canvas.is_none();
-        let Some(canvas) = canvas.or_else(|| self.begin(&tracer, prepass)) else {
-            self.left.structure = Some(tracer.into_structure());
-            return self.left;
-        };
-        let tracer = tracer.with_caustics();
-        std::thread::scope(|scope| {
-            let (tracer, prepass) = (&tracer, &prepass);
-            let Painter { desk, hub, .. } = self.painter;
-            let job = self.job;
-            scope.spawn(move || {
-                let _bomb = Bomb;
-                answer_all(desk, hub, tracer, prepass, job);
-            });
-            self.paint(tracer, canvas, fresh);
-        });
+        let begun = canvas.or_else(|| front.install(|| self.begin(&tracer)));
+        if let Some(canvas) = begun {
+            if threads.install(|| self.find_caustics(&mut tracer)) {
+                std::thread::scope(|scope| {
+                    let (tracer, prepass, job) = (&tracer, canvas.prepass, self.job);
+                    scope.spawn(move || {
+                        let _bomb = Bomb;
+                        front.install(|| answer_all(desk, hub, tracer, &prepass, job));
+                    });
+                    threads.install(|| self.paint(tracer, canvas, fresh));
+                });
+            } else {
+                self.left.canvas = Some(canvas);
+            }
+        }
         self.left.structure = Some(tracer.into_structure());
         self.left
+    }
+
+    /// Looks where caustics come from. False if a new job comes before that is known.
+    fn find_caustics(&self, tracer: &mut Tracer) -> bool {
+        // It is cancelled too where only another window is to come first.
+        while let Some(control) = self.painter.desk.begin() {
+            if tracer.find_caustics(&control).is_ok() {
+                return true;
+            }
+        }
+        false
     }
 
     /// What stays good of the samples there are.
@@ -274,13 +297,31 @@ impl<'a> Painting<'a> {
     }
 
     /// Takes a first look. None if a new job comes before it is done.
-    fn begin(&mut self, tracer: &Tracer, prepass: Prepass) -> Option<Canvas> {
-        let start = Instant::now();
-        let look = loop {
+    fn begin(&mut self, tracer: &Tracer) -> Option<Canvas> {
+        let (start, prepass) = (Instant::now(), tracer.prepass());
+        let size = self.scene.trace.size;
+        let mut look = Look::default();
+        let soon = !tracer.knows_caustics() && size.map(u64::from).iter().product::<u64>() <= SOON;
+        for step in if soon { &[LOOK, 1][..] } else { &[LOOK] } {
+            look = self.look(tracer, *step)?;
+            if !self.mixing {
+                let shown = self.shown(&prepass);
+                let frame = self.frame(look.pixels.clone(), *step, [0, 1], shown, false);
+                self.painter.hub.show(frame);
+            }
+        }
+        let film = Film::new(Window::whole(size), prepass.scale);
+        let (work, time) = (Work::new(size), start.elapsed());
+        Some(Canvas { film, prepass, work, look, time, noise: None, aim: self.first_aim(), done: false })
+    }
+
+    /// Looks at one pixel of so many across and down. None if a new job comes before it is done.
+    fn look(&self, tracer: &Tracer, step: u32) -> Option<Look> {
+        let seen = loop {
             let control = self.painter.desk.begin()?;
             // It is cancelled too where only another window is to come first.
-            if let Ok(look) = tracer.look(LOOK, &control) {
-                break look;
+            if let Ok(seen) = tracer.look(step, &control) {
+                break seen;
             }
         };
         let pixel = |seen: Option<Rgb>| match seen {
@@ -290,16 +331,7 @@ impl<'a> Painting<'a> {
             }
             None => [0.0, 0.0, 0.0, f32::INFINITY, 0.0],
         };
-        let look: Vec<[f32; 5]> = look.into_iter().map(pixel).collect();
-        if !self.mixing {
-            let shown = self.shown(&prepass);
-            let frame = self.frame(look.clone(), LOOK, [0, 1], shown, false);
-            self.painter.hub.show(frame);
-        }
-        let size = self.scene.trace.size;
-        let film = Film::new(Window::whole(size), prepass.scale);
-        let (work, time) = (Work::new(size), start.elapsed());
-        Some(Canvas { film, prepass, work, look, time, noise: None, aim: self.first_aim(), done: false })
+        Some(Look { step, pixels: seen.into_par_iter().map(pixel).collect() })
     }
 
     fn step(&self, tracer: &Tracer, canvas: &mut Canvas, step: &Step, control: &Control) -> bool {
@@ -444,10 +476,10 @@ impl<'a> Painting<'a> {
 /// What pixels show: their means, or where there are no samples the first look.
 fn pixels(canvas: &Canvas, [width, height]: [u32; 2]) -> Vec<[f32; 5]> {
     let Canvas { film, look, .. } = canvas;
-    let columns = width.div_ceil(LOOK);
+    let columns = width.div_ceil(look.step);
     let row = |y: u32| (0..width).map(move |x| (x, y));
     let pixel = |(x, y): (u32, u32)| match film.samples(x, y) {
-        0 => look[(y / LOOK * columns + x / LOOK) as usize],
+        0 => look.pixels[(y / look.step * columns + x / look.step) as usize],
         _ => {
             let [r, g, b] = film.mean(x, y).to_array().map(|v| (v as f32).clamp(f32::MIN, f32::MAX));
             [r, g, b, film.error(x, y) as f32, film.alpha(x, y) as f32]

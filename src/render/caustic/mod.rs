@@ -29,10 +29,10 @@ mod search;
 mod seeds;
 pub mod walk;
 
-use super::Tracer;
 use super::lanes::One;
 use super::light::{Lights, Receivers};
 use super::vector::V;
+use super::{Cancelled, Control, Tracer};
 use chain::Ways;
 use goal::Goal;
 use search::Search;
@@ -50,24 +50,34 @@ pub struct Caustics {
     search: Option<Search>,
 }
 
+/// Whether a scene may have any: it takes polished surfaces.
+pub fn may_be(tracer: &Tracer) -> bool {
+    tracer.scene.trace.indirect && !photons::casters(tracer).is_empty()
+}
+
 impl Caustics {
     /// Sends photons through a scene. Without polished surfaces or without lamps there is nothing to do, ever.
-    pub fn new(tracer: &Tracer) -> Caustics {
+    ///
+    /// # Errors
+    ///
+    /// If the control cancels.
+    pub fn new(tracer: &Tracer, control: &Control) -> Result<Caustics, Cancelled> {
         let casters = photons::casters(tracer);
         if casters.is_empty() || !tracer.scene.trace.indirect {
-            return Caustics::default();
+            return Ok(Caustics::default());
         }
         let goals = tracer.lights.goals();
-        let photons = photons::photons(tracer, &goals, &casters);
+        let photons = photons::photons(tracer, &goals, &casters, control)?;
         let search = Search::new(&goals, &photons);
-        let Some(seeds) = Seeds::new(photons, |p, seeds| effort(&tracer.lights, &goals, p, seeds)) else {
-            return Caustics::default();
+        let effort = |p, seeds: &[Seed]| effort(&tracer.lights, &goals, p, seeds);
+        let Some(seeds) = Seeds::new(photons, effort, control)? else {
+            return Ok(Caustics::default());
         };
         let mut goal_of = vec![None; tracer.lights.len()];
         for (index, goal) in (0..).zip(&goals) {
             goal_of[goal.lamp as usize] = Some(index);
         }
-        Caustics { goals, goal_of, seeds: Some(seeds), search }
+        Ok(Caustics { goals, goal_of, seeds: Some(seeds), search })
     }
 
     /// Forgets all seeds, so that what luck does not find has to be searched for.

@@ -11,7 +11,7 @@ use crate::render::media::Inside;
 use crate::render::sampler::{Pair, Sampler, seed_key};
 use crate::render::shape::{NOWHERE, Rays};
 use crate::render::vector::{V, basis, single, towards};
-use crate::render::{Tracer, level, warp};
+use crate::render::{Cancelled, Control, Tracer, level, warp};
 use crate::scene::{Material, Primitive, Shape};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -79,7 +79,16 @@ struct Batch {
 }
 
 /// Sends photons from all lamps. The same each time.
-pub fn photons(tracer: &Tracer, goals: &[Goal], casters: &[Caster]) -> Vec<Photon> {
+///
+/// # Errors
+///
+/// If the control cancels.
+pub fn photons(
+    tracer: &Tracer,
+    goals: &[Goal],
+    casters: &[Caster],
+    control: &Control,
+) -> Result<Vec<Photon>, Cancelled> {
     // What reaches the polished surfaces from each lamp says how many of the photons it gets.
     let many = goals.len().saturating_mul(casters.len()) > MOST_PAIRS;
     let some = if many { &[None][..] } else { casters };
@@ -87,7 +96,7 @@ pub fn photons(tracer: &Tracer, goals: &[Goal], casters: &[Caster]) -> Vec<Photo
         goals.iter().map(|goal| shares(tracer, goal, some).last().map_or(0.0, |&sum| sum)).collect();
     let total: f64 = reached.iter().sum();
     if !(total > 0.0 && total < f64::INFINITY) {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let [width, height] = tracer.scene.trace.size;
     let wanted = (SENT_BY_PIXEL * f64::from(width) * f64::from(height)).clamp(*SENT.start(), *SENT.end());
@@ -106,12 +115,19 @@ pub fn photons(tracer: &Tracer, goals: &[Goal], casters: &[Caster]) -> Vec<Photo
     let traced: Vec<Vec<Photon>> = batches
         .par_iter()
         .map(|batch| {
+            control.rest();
+            if control.is_cancelled() {
+                return Vec::new();
+            }
             let goal = &goals[batch.goal as usize];
             let shares = shares(tracer, goal, some);
             tracer.level.run(Emission { tracer, goal, casters: some, shares: &shares, batch })
         })
         .collect();
-    thinned(traced.into_iter().flatten().collect())
+    if control.is_cancelled() {
+        return Err(Cancelled);
+    }
+    Ok(thinned(traced.into_iter().flatten().collect()))
 }
 
 /// Leaves out some photons far from the camera, where less of the picture depends on them, and gives their power to

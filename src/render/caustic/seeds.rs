@@ -5,6 +5,7 @@ use super::photons::Photon;
 use crate::math::DVec3;
 use crate::render::lanes::One;
 use crate::render::vector::{V, single};
+use crate::render::{Cancelled, Control};
 use crate::scene::shape::Bounds;
 use rayon::prelude::*;
 
@@ -93,20 +94,35 @@ const REACH: f64 = 0.5;
 impl Seeds {
     /// Sorts photons into cells; none without photons. How often to look for light at a place is told from the
     /// seeds there.
-    pub fn new(mut photons: Vec<Photon>, effort: impl Fn([f32; 3], &[Seed]) -> f32) -> Option<Seeds> {
+    ///
+    /// # Errors
+    ///
+    /// If the control cancels.
+    pub fn new(
+        mut photons: Vec<Photon>,
+        effort: impl Fn([f32; 3], &[Seed]) -> f32,
+        control: &Control,
+    ) -> Result<Option<Seeds>, Cancelled> {
         let bounds = photons
             .iter()
             .map(|photon| place(photon.p))
             .fold(Bounds::EMPTY, |sum, p| sum.union(Bounds { min: p, max: p }));
         if photons.is_empty() || !bounds.min.is_finite() || !bounds.max.is_finite() {
-            return None;
+            return Ok(None);
         }
         // A cube, so that cells are nearly cubes, a little larger than what the photons met.
         let half = DVec3::splat(0.55 * bounds.size().max_element() + f64::from(f32::MIN_POSITIVE));
         let cube = Bounds { min: bounds.center() - half, max: bounds.center() + half };
         let mut tree = Tree { nodes: Vec::new(), leaves: Vec::new() };
         tree.build(&mut photons, 0, cube, 0);
-        let found: Vec<Found> = tree.leaves.par_iter().map(|leaf| tree.seeds(&photons, leaf.cell)).collect();
+        let leaves = tree.leaves.par_iter();
+        let found: Option<Vec<Found>> = leaves
+            .map(|leaf| {
+                control.rest();
+                (!control.is_cancelled()).then(|| tree.seeds(&photons, leaf.cell))
+            })
+            .collect();
+        let found = found.ok_or(Cancelled)?;
         let mut seeds = Seeds {
             low: single(cube.min),
             high: single(cube.max),
@@ -119,7 +135,7 @@ impl Seeds {
         for (leaf, found) in tree.leaves.iter().zip(found) {
             seeds.push(found, single(leaf.cell.center()), &effort);
         }
-        Some(seeds)
+        Ok(Some(seeds))
     }
 
     /// Empties all cells.

@@ -2,7 +2,8 @@
 // bars (640×360, about 100 primitives).
 
 import { join } from "node:path";
-import { browse, open, pause, placeOf, save, until, watch } from "./setting.mjs";
+import { open } from "./plain.mjs";
+import { pause, placeOf, save, until, watch } from "./setting.mjs";
 
 const ROUNDS = Number(process.argv[4] ?? 40);
 const SIZE = [640, 360];
@@ -46,10 +47,10 @@ function watchPaints() {
 const clock = () => performance.timeOrigin + performance.now();
 
 /// Waits for the first paint of a kind, and gives its time.
-const paint = (page, kind, { after = 0, step = 8, pixel } = {}) =>
+const paint = (page, kind, { after = 0, step = 8, pixel = null } = {}) =>
   until(`${kind} is painted`, () => page.evaluate(
     ([kind, after, step, pixel]) =>
-      window.paints.find((paint) => paint.kind === kind && !(paint.generation <= after) && !(paint.step > step) && paint.pixel === pixel)?.at,
+      window.paints.find((paint) => paint.kind === kind && !(paint.generation <= after) && !(paint.step > step) && (paint.pixel ?? null) === pixel)?.at,
     [kind, after, step, pixel],
   ));
 
@@ -77,9 +78,9 @@ async function measure(page) {
     const pixel = [40 + ((i * 97) % 560), 60 + ((i * 53) % 240)];
     const { x, y } = await placeOf(page, pixel, SIZE);
     start = clock();
-    await page.mouse.click(x, y);
+    await page.click(x, y);
     times.inspector.push((await paint(page, "why", { pixel: String(pixel) })) - start);
-    await page.keyboard.press("Escape");
+    await page.press("Escape");
   }
 }
 
@@ -94,14 +95,16 @@ async function interrupt() {
 }
 
 save(scene, text(color(49)));
-const browser = await browse();
 const watched = await watch(scene);
 try {
-  const page = await open(browser, watched.url);
-  await page.evaluate(watchPaints);
-  await measure(page);
+  const page = await open(watched.url);
+  try {
+    await page.evaluate(watchPaints);
+    await measure(page);
+  } finally {
+    await page.close();
+  }
 } finally {
-  await browser.close();
   await watched.end();
 }
 for (let i = 0; i < ROUNDS; i++) await interrupt();

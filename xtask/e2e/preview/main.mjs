@@ -99,6 +99,13 @@ await check("nothing flashes", {}, async ({ url }, scene) => {
   equal(blank, 0, "blank pixels");
   assert(looks > 20, `${looks} frames were looked at`);
   equal(await page.textContent("#exposure-text"), exposure, "the exposure survives");
+  await page.keyboard.press("+");
+  const zoom = await page.textContent("#zoom-fit");
+  assert(zoom !== "fit", "it is zoomed");
+  await page.reload();
+  await page.waitForSelector('#stage[data-step="1"]');
+  await until("the zoom survives a reload", async () => (await page.textContent("#zoom-fit")) === zoom, 5000);
+  equal(await page.textContent("#exposure-text"), exposure, "the exposure survives a reload");
 });
 
 await check("a pixel tells what the file holds", {}, async ({ url }, scene) => {

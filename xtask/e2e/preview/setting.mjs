@@ -10,9 +10,11 @@ export const [rtc, tools] = process.argv.slice(2);
 const { chromium } = createRequire(join(tools, "package.json"))("playwright-core");
 
 /// Headless, and without attempts to reach the network.
-const FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
+export const FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
 
-export const browse = () => chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: FLAGS });
+export const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
+
+export const browse = () => chromium.launch({ executablePath: CHROMIUM, args: FLAGS });
 
 export function assert(holds, message) {
   if (!holds) throw new Error(message);
@@ -75,7 +77,7 @@ export const finished = (page) => page.waitForSelector("#state[data-state=done]"
 
 /// The middle of a pixel of the picture on the page.
 export async function placeOf(page, [x, y], size) {
-  const box = await page.locator("#stage").boundingBox();
+  const box = await page.evaluate(() => document.getElementById("stage").getBoundingClientRect().toJSON());
   const zoom = Math.min((box.width - 24) / size[0], (box.height - 24) / size[1]);
   return { x: box.x + (box.width - size[0] * zoom) / 2 + (x + 0.5) * zoom, y: box.y + (box.height - size[1] * zoom) / 2 + (y + 0.5) * zoom };
 }

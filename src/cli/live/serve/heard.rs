@@ -41,6 +41,9 @@ pub enum Heard {
         x: u32,
         /// Row.
         y: u32,
+        /// Whether to take all samples that there are, and not only what can be told at once.
+        #[serde(default)]
+        patient: bool,
     },
     /// Which pixels show what stands here?
     Light {
@@ -78,7 +81,10 @@ mod tests {
         let set = Heard::Set { name: "n".into(), value: "12".into() };
         assert_eq!(read(r#"{"type":"set","name":"n","value":"12"}"#), Ok(set));
         assert_eq!(read(r#"{"type":"crop","window":null}"#), Ok(Heard::Crop { window: None }));
-        assert_eq!(read(r#"{"type":"why","x":1,"y":2,"id":3}"#), Ok(Heard::Why { id: 3, x: 1, y: 2 }));
+        assert_eq!(
+            read(r#"{"type":"why","x":1,"y":2,"id":3}"#),
+            Ok(Heard::Why { id: 3, x: 1, y: 2, patient: false })
+        );
     }
 
     #[test]

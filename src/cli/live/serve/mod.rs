@@ -54,6 +54,8 @@ struct Shared {
     editor: Editor,
     /// One for each page that may come.
     seats: Arc<Semaphore>,
+    /// One, for pictures that are saved: each takes memory.
+    saving: Semaphore,
 }
 
 /// Serves the page from a thread of its own until the process ends. Gives its address, secret included.
@@ -68,6 +70,7 @@ pub fn start(hub: Arc<Hub>, wanted: Wanted) -> Result<String, Problem> {
         guard: Guard::new(address, token),
         editor: wanted.editor,
         seats: Arc::new(Semaphore::new(MOST_PAGES)),
+        saving: Semaphore::new(1),
     });
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|error| refused(address, &error))?;
@@ -113,7 +116,7 @@ async fn answer(State(shared): State<Arc<Shared>>, request: Request) -> Response
         Err(status) => (status, reason(status)).into_response(),
         Ok(Wish::Redirect(to)) => (StatusCode::PERMANENT_REDIRECT, [(header::LOCATION, to)]).into_response(),
         Ok(Wish::Asset(asset)) => ([(header::CONTENT_TYPE, asset.media)], asset.text).into_response(),
-        Ok(Wish::Picture(picture)) => save::answer(&shared.hub, picture).await,
+        Ok(Wish::Picture(picture)) => save::answer(&shared, picture).await,
         Ok(Wish::Socket) => match WebSocketUpgrade::from_request_parts(&mut parts, &()).await {
             Ok(upgrade) => socket::answer(shared, upgrade),
             Err(_) => (StatusCode::BAD_REQUEST, "this is a WebSocket").into_response(),

@@ -1,7 +1,8 @@
 //! The picture in the making, as a file.
 
-use super::super::hub::{Frame, Hub};
+use super::super::hub::Frame;
 use super::super::writer::picture;
+use super::Shared;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use rt_lang::output::{self, Depth, Facts, Format};
@@ -50,7 +51,10 @@ impl Saved {
 }
 
 /// The newest picture as a file.
-pub async fn answer(hub: &Hub, saved: Saved) -> Response {
+pub async fn answer(shared: &Shared, saved: Saved) -> Response {
+    let hub = &shared.hub;
+    // It is never closed.
+    let _turn = shared.saving.acquire().await;
     let Some(frame) = hub.frame().filter(|frame| frame.step == 1) else {
         return (StatusCode::SERVICE_UNAVAILABLE, "There is no picture yet.\n").into_response();
     };

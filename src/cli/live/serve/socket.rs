@@ -3,7 +3,7 @@
 //! A page is told what is new once it has taken what came before, and then only the newest: one that is slow misses what
 //! came in between, and nobody waits for it.
 
-use super::super::hub::{Mask, Request, Status};
+use super::super::hub::{Known, Mask, Request, Status};
 use super::Shared;
 use super::heard::{self, Heard, MOST_BYTES};
 use super::tiles::{self, Sent};
@@ -143,8 +143,11 @@ impl Talk {
                     move |answer| vec![text(&wrote(id, answer))],
                 );
             }
-            Ok(Heard::Why { id, x, y }) => {
-                self.ask(|reply| Request::Why { x, y, reply }, move |answer| vec![text(&why(id, answer))]);
+            Ok(Heard::Why { id, x, y, patient }) => {
+                self.ask(
+                    |reply| Request::Why { x, y, patient, reply },
+                    move |answer| vec![text(&why(id, answer))],
+                );
             }
             Ok(Heard::Light { id, file, line, column }) => {
                 self.ask(
@@ -214,9 +217,11 @@ fn wrote(id: u32, answer: Option<Result<(), String>>) -> Value {
     }
 }
 
-fn why(id: u32, answer: Option<Result<Value, String>>) -> Value {
+fn why(id: u32, answer: Option<Result<Known, String>>) -> Value {
     match answer.unwrap_or_else(|| Err(NO_ANSWER.into())) {
-        Ok(why) => json!({ "type": "why", "id": id, "ok": true, "why": why }),
+        Ok(Known { why, more }) => {
+            json!({ "type": "why", "id": id, "ok": true, "why": why, "more": more })
+        }
         Err(error) => json!({ "type": "why", "id": id, "ok": false, "error": error }),
     }
 }

@@ -2,6 +2,7 @@
 
 use super::super::hub::{Frame, Mask};
 use half::f16;
+use half::slice::HalfFloatSliceExt;
 
 /// Pixels across and down a tile.
 const SIDE: u32 = 64;
@@ -82,17 +83,20 @@ impl Sent {
             0,
         ]);
         let factor = rt_lang::math::exp2(f64::from(self.scale)) as f32;
-        message.reserve((tile.width * tile.height * channels * 2) as usize);
+        let count = (tile.width * tile.height * channels) as usize;
+        let mut values = Vec::with_capacity(count);
         for [r, g, b, error, covered] in tile.rows(frame).flatten() {
-            for value in [r, g, b].map(|value| bounded(value * factor)) {
-                message.extend(value.to_le_bytes());
-            }
             // No error is known of a single sample: that stays infinite.
-            message.extend(f16::from_f32(error * factor).to_le_bytes());
+            let shown = [bounded(r * factor), bounded(g * factor), bounded(b * factor), error * factor];
+            values.extend(shown);
             if transparent {
-                message.extend(f16::from_f32(*covered).to_le_bytes());
+                values.push(*covered);
             }
         }
+        // All at once, by the processor's own instructions where it has them.
+        let mut halves = vec![f16::ZERO; count];
+        halves.convert_from_f32_slice(&values);
+        message.extend(halves.iter().flat_map(|half| half.to_le_bytes()));
         message
     }
 }
@@ -115,8 +119,9 @@ impl Tile {
 }
 
 /// What is beyond the range is the greatest there is, and what is not a number is nothing.
-fn bounded(value: f32) -> f16 {
-    if value.is_nan() { f16::ZERO } else { f16::from_f32(value.clamp(f16::MIN.to_f32(), f16::MAX.to_f32())) }
+#[inline]
+fn bounded(value: f32) -> f32 {
+    if value.is_nan() { 0.0 } else { value.clamp(f16::MIN.to_f32(), f16::MAX.to_f32_const()) }
 }
 
 /// Pixels that are chosen, as the answer to a question.

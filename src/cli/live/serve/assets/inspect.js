@@ -15,7 +15,7 @@ const PATHS = {
 const MOST_NAME = 18;
 const BRIEF_NAME = 10;
 
-/// The panel. `on` has `ask(x, y)` and `mark(pixel or null)`.
+/// The panel. `on` has `ask(x, y, patient)` and `mark(pixel or null)`.
 export class Inspector {
   constructor(on) {
     this.on = on;
@@ -51,12 +51,19 @@ export class Inspector {
     const asked = ++this.asked;
     const [x, y] = this.pixel;
     part("why").setAttribute("aria-busy", "true");
-    const answer = await this.on.ask(x, y).catch((error) => ({ error: error.message }));
-    // Another pixel has been chosen since.
-    if (asked !== this.asked) return;
+    // What can be told at once, then what all samples tell.
+    let more = true;
+    for (const patient of [false, true]) {
+      const answer = more && (await this.on.ask(x, y, patient).catch((error) => ({ error: error.message })));
+      // Another pixel has been chosen since.
+      if (asked !== this.asked) return;
+      if (answer) {
+        part("why").replaceChildren(...(answer.ok ? told(answer.why) : [element("p", { class: "hint" }, answer.error)]));
+        part("why").dataset.pixel = `${x},${y}`;
+      }
+      more = answer.more;
+    }
     part("why").removeAttribute("aria-busy");
-    part("why").replaceChildren(...(answer.ok ? told(answer.why) : [element("p", { class: "hint" }, answer.error)]));
-    part("why").dataset.pixel = `${x},${y}`;
   }
 
   clear() {

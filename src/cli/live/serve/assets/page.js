@@ -13,10 +13,12 @@ import { View } from "./view.js";
 
 /// What this page was left with, as far as a reload should keep it.
 const kept = JSON.parse(sessionStorage.getItem("look") ?? "{}");
-const state = { status: null, stops: kept.stops ?? 0, tonemap: kept.tonemap ?? "", show: kept.show ?? "picture", under: null };
+const state = { place: kept.place, status: null, stops: kept.stops ?? 0, tonemap: kept.tonemap ?? "", show: kept.show ?? "picture", under: null };
 
 const view = new View(part("stage"), () => {
   say(part("zoom-fit"), view.fitted ? "fit" : `${Math.round(view.zoom * 100)} %`);
+  state.place = view.fitted ? null : { zoom: view.zoom, origin: view.origin };
+  remember();
   placeDivider();
 });
 const params = new Params({
@@ -25,7 +27,7 @@ const params = new Params({
   say: toast,
 });
 const inspector = new Inspector({
-  ask: (x, y) => link.ask({ type: "why", x, y }),
+  ask: (x, y, patient) => link.ask({ type: "why", x, y, patient }),
   mark: (pixel) => {
     view.mark = pixel;
     view.draw();
@@ -65,6 +67,8 @@ const link = new Link({
   },
 });
 
+view.wanted = kept.place ?? null;
+
 // ---- developing
 
 function stops() {
@@ -75,10 +79,16 @@ function tonemap() {
   return state.tonemap || (state.develop?.tonemap ?? "neutral");
 }
 
+/// Keeps for a reload how the picture is looked at.
+function remember() {
+  const { stops, tonemap, show, place } = state;
+  sessionStorage.setItem("look", JSON.stringify({ stops, tonemap, show, place }));
+}
+
 /// Develops the picture anew if that looks otherwise now.
 function develop() {
   const look = { stops: stops(), tonemap: tonemap(), show: state.show };
-  sessionStorage.setItem("look", JSON.stringify({ stops: state.stops, tonemap: state.tonemap, show: state.show }));
+  remember();
   const offset = state.stops === 0 ? "" : ` (${signed(state.stops)})`;
   say(part("exposure-text"), `${look.stops.toFixed(2)} stops${offset}`);
   part("exposure").value = state.stops;

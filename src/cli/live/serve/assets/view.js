@@ -51,6 +51,8 @@ export class View {
     this.zoom = 1;
     this.origin = [0, 0];
     this.fitted = true;
+    /// Where the first picture is to be, if not as large as it goes.
+    this.wanted = null;
     this.mark = null;
     this.window = null;
     this.lit = null;
@@ -64,8 +66,19 @@ export class View {
     const first = !this.film || this.film.size.some((side, i) => side !== film.size[i]);
     this.film = film;
     this.due.developing = true;
-    if (first) this.fit();
+    if (first) this.begin();
     else this.draw();
+  }
+
+  /// Puts the first picture where a page before had it, any other as large as it goes.
+  begin() {
+    const wanted = this.wanted;
+    this.wanted = null;
+    if (!wanted) return this.fit();
+    this.zoom = wanted.zoom;
+    this.origin = wanted.origin;
+    this.fitted = false;
+    this.keep();
   }
 
   /// Develops otherwise from now on.
