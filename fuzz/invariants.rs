@@ -5,11 +5,12 @@ use crate::dump;
 use rt_lang::diagnostic::Diagnostic;
 use rt_lang::eval::Limits;
 use rt_lang::files::NoFiles;
+use rt_lang::ide::{Stop, complete, references, rename, signatures};
 use rt_lang::source::{Source, Sources};
 use rt_lang::span::SourceId;
 use rt_lang::syntax::ast::File;
 use rt_lang::syntax::{self, parse_expression};
-use rt_lang::{Options, compile as compile_scene};
+use rt_lang::{Options, analyse, compile as compile_scene};
 
 const SOURCE: SourceId = SourceId(0);
 
@@ -47,6 +48,37 @@ pub fn compile(text: &str) {
     let compiled = compile_scene(&NoFiles, &mut sources, id, &options);
     assert!(compiled.scene.is_some() || !compiled.diagnostics.is_empty());
     dump::diagnostics(text, &compiled.diagnostics);
+}
+
+/// Whatever is asked of a text wherever, there is an answer.
+pub fn ask(text: &str) {
+    let limits = Limits { things: 10_000, levels: 16, items: 10_000, steps: 100_000, ..Limits::default() };
+    let options = Options { limits, ..Options::default() };
+    let source = Source::new("fuzz.rt", text);
+    let never: Stop = &|| false;
+    let Some(found) = analyse(&NoFiles, source.clone(), &options, never) else { panic!("nobody stopped it") };
+    let all = 0..text.len();
+    // Places all over the text, also within characters and behind its end.
+    for at in (0..=text.len() + 1).step_by(1 + text.len() / 8) {
+        found.hover(at);
+        found.definition(at);
+        found.selection(at);
+        references(&[&found], &found, at, true);
+        if let Some(Ok(_)) = found.renamable(at) {
+            let _ = rename(&[&found], &found, at, "other");
+        }
+        complete(&NoFiles, &source, at, &options.limits, never);
+        signatures(&NoFiles, &source, at, &options.limits, never);
+    }
+    found.symbols();
+    found.folds();
+    found.tokens(all.clone());
+    found.colours();
+    found.hints(all.clone());
+    found.format(all.clone());
+    found.links();
+    found.lenses();
+    found.fixes(all);
 }
 
 fn said(slips: &[Diagnostic]) -> Vec<String> {

@@ -14,6 +14,13 @@ pub trait Files: Sync {
     /// The bytes of a file, at most `most` of them. The same path gives the same bytes throughout one compilation.
     fn read(&self, path: &FilePath, most: usize) -> Result<Arc<[u8]>, FileError>;
 
+    /// The names of what a folder below the root holds, for who writes a path; those of folders end with `/`. The folder is
+    /// written as a [`FilePath`], and the root folder as nothing. Nothing where it cannot be read.
+    fn list(&self, folder: &str) -> Vec<String> {
+        let _ = folder;
+        vec![]
+    }
+
     /// What a person calls a file.
     fn name(&self, path: &FilePath) -> String {
         path.to_string()

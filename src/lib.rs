@@ -32,6 +32,7 @@
 //! | [`inventory`] | what stands in a picture, counted | how it is shown |
 //! | [`mend`] | applying the edits that diagnostics offer | files |
 //! | [`report`] | diagnostics to text, for a person or a program | what they are about |
+//! | [`ide`] | what an editor asks of a text | protocols, how it is compiled |
 //! | [`why`] | what a pixel shows and where its light comes from, by places in the source | how it is shown |
 
 pub mod asset;
@@ -47,6 +48,7 @@ pub mod expand;
 pub mod explain;
 pub mod export;
 pub mod files;
+pub mod ide;
 pub mod import;
 pub mod inventory;
 pub mod lint;
@@ -60,20 +62,22 @@ pub mod scene;
 pub mod schema;
 pub mod source;
 pub mod span;
+mod stack;
 pub mod syntax;
 pub mod units;
 pub mod why;
 
-use check::Setting;
+use check::{Program, Setting};
 use diagnostic::{Code, Diagnostic};
 use eval::{Limits, Origins, Thing, Things};
 use files::{Contents, Files};
+use ide::{Analysis, Stop, Study};
 use import::Imported;
 use inventory::Inventory;
-use lower::{Marks, Meshes, Overrides, Places};
+use lower::{Lowered, Marks, Meshes, Overrides, Places};
 use render::feedback::Feedback;
 use scene::Scene;
-use source::Sources;
+use source::{Source, Sources};
 use span::{SourceId, Span};
 use why::Provenance;
 
@@ -113,92 +117,168 @@ pub struct Options {
     pub limits: Limits,
 }
 
-/// Bytes of stack for checking and evaluating: expressions within parts within calls go deep.
-const STACK: usize = 256 << 20;
-
 /// Compiles a source to a scene: parse it and what it imports, check, evaluate, lower. Every stage runs, also after
 /// errors, so that one run reports all that is wrong. `files` is what the source may read; what it imports is added
 /// to `sources`, and so is each setting.
 pub fn compile(files: &dyn Files, sources: &mut Sources, main: SourceId, options: &Options) -> Compiled {
-    let imported = import::import(files, sources, main, options.limits.levels, options.limits.text);
-    let (settings, slips) = check::settings(sources, &options.set);
-    let sources = &*sources;
-    let work = move || stages(files, sources, main, imported, settings, slips, options);
-    std::thread::scope(|scope| {
-        let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work);
-        let thread = thread.expect("the system gives a process one more thread");
-        thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-    })
+    let (compiled, _) = run(files, sources, main, options, None);
+    compiled
 }
 
-fn stages(
+/// Finds out what a source means, for the questions of an editor: as [`compile`] does, with what is learnt on the way. None
+/// where `stop` ended it.
+pub fn analyse(files: &dyn Files, main: Source, options: &Options, stop: Stop) -> Option<Analysis> {
+    let mut sources = Sources::default();
+    let main = sources.add(main);
+    let (compiled, study) = run(files, &mut sources, main, options, Some(stop));
+    let Compiled { diagnostics, notes, scene, marks, .. } = compiled;
+    let camera = scene.map(|scene| scene.camera).zip(marks.camera);
+    (!stop()).then(|| Analysis::new(sources, main, diagnostics, notes, camera, study))
+}
+
+/// Runs all stages. `stop` is asked only by who keeps what is learnt.
+fn run(
     files: &dyn Files,
-    sources: &Sources,
+    sources: &mut Sources,
     main: SourceId,
-    mut imported: Imported,
-    settings: Vec<Setting>,
-    slips: Vec<Diagnostic>,
     options: &Options,
-) -> Compiled {
-    let mut diagnostics = std::mem::take(&mut imported.diagnostics);
-    diagnostics.extend(slips);
-    let (program, found) = check::check(files, sources, &imported, &settings);
-    // The trees are large.
-    drop(imported);
-    diagnostics.extend(found);
-    if diagnostic::any_errors(&diagnostics) {
-        // What could not be understood may use any name.
-        diagnostics.retain(|diagnostic| diagnostic.code != Code::W0106);
+    stop: Option<Stop>,
+) -> (Compiled, Study) {
+    let imported = import::import(files, sources, main, options.limits.levels, options.limits.text);
+    let (settings, slips) = check::settings(sources, &options.set);
+    let world = World { files, sources, main, options, stop };
+    stack::deep(move || world.stages(imported, settings, slips))
+}
+
+/// What the stages are told.
+struct World<'w> {
+    files: &'w dyn Files,
+    sources: &'w Sources,
+    main: SourceId,
+    options: &'w Options,
+    /// Of who keeps what is learnt.
+    stop: Option<Stop<'w>>,
+}
+
+impl World<'_> {
+    /// Checks, evaluates and lowers.
+    fn stages(
+        &self,
+        mut imported: Imported,
+        settings: Vec<Setting>,
+        slips: Vec<Diagnostic>,
+    ) -> (Compiled, Study) {
+        let World { files, sources, main, options, .. } = *self;
+        let mut diagnostics = std::mem::take(&mut imported.diagnostics);
+        diagnostics.extend(slips);
+        let mut study = Study::default();
+        let (program, found) = match self.stop {
+            None => {
+                let found = check::check(files, sources, &imported, &settings);
+                // The trees are large.
+                drop(imported);
+                found
+            }
+            Some(_) => {
+                let (program, found, notes) = check::study(files, sources, &imported, &settings);
+                study = Study { files: imported.files, notes, ..study };
+                (program, found)
+            }
+        };
+        diagnostics.extend(found);
+        if self.is_stopped() {
+            return (Compiled::unfinished(main), study);
+        }
+        if diagnostic::any_errors(&diagnostics) {
+            // What could not be understood may use any name.
+            diagnostics.retain(|diagnostic| diagnostic.code != Code::W0106);
+        }
+        let meshes = Meshes::new(files, sources);
+        let measure = |things: &Things, thing: &Thing| lower::measure(things, thing, &meshes);
+        let (things, found) = match self.stop {
+            None => eval::eval(&program, options.limits, &measure),
+            Some(stop) => {
+                let (things, found, values) = eval::watch(&program, options.limits, &measure, &|| stop());
+                study.values = values;
+                (things, found)
+            }
+        };
+        diagnostics.extend(found);
+        if self.is_stopped() {
+            return (Compiled::unfinished(main), study);
+        }
+        let mut lowered = lower::lower(&things, &options.overrides, files, sources, &meshes);
+        diagnostics.append(&mut lowered.diagnostics);
+        if self.is_stopped() {
+            return (Compiled::unfinished(main), study);
+        }
+        check::blame(&settings, sources, main, &mut diagnostics);
+        if !diagnostic::any_errors(&diagnostics) {
+            diagnostics.extend(lower::nothing_to_see(&things, main));
+        }
+        if let Some(scene) = lowered.scene.as_ref().filter(|_| !diagnostic::any_errors(&diagnostics)) {
+            diagnostics.extend(lint::lint(scene, &things.origins, &lowered.marks));
+            for (camera, marks) in &lowered.others {
+                diagnostics.extend(lint::look_through(scene, camera, &things.origins, marks));
+            }
+        }
+        let inventory = Inventory::of(&program, sources, &things);
+        (self.compiled(program, things, lowered, inventory, diagnostics), study)
     }
-    let meshes = Meshes::new(files, sources);
-    let measure = |things: &Things, thing: &Thing| lower::measure(things, thing, &meshes);
-    let (things, found) = eval::eval(&program, options.limits, &measure);
-    diagnostics.extend(found);
-    let lowered = lower::lower(&things, &options.overrides, files, sources, &meshes);
-    diagnostics.extend(lowered.diagnostics);
-    check::blame(&settings, sources, main, &mut diagnostics);
-    if !diagnostic::any_errors(&diagnostics) {
-        diagnostics.extend(lower::nothing_to_see(&things, main));
-    }
-    if let Some(scene) = lowered.scene.as_ref().filter(|_| !diagnostic::any_errors(&diagnostics)) {
-        diagnostics.extend(lint::lint(scene, &things.origins, &lowered.marks));
-        for (camera, marks) in &lowered.others {
-            diagnostics.extend(lint::look_through(scene, camera, &things.origins, marks));
+
+    /// Puts together what the stages found.
+    fn compiled(
+        &self,
+        program: Program,
+        things: Things,
+        lowered: Lowered,
+        inventory: Inventory,
+        mut diagnostics: Vec<Diagnostic>,
+    ) -> Compiled {
+        let unused = allow::allow(&program.allows, &mut diagnostics);
+        diagnostics.extend(unused);
+        diagnostics.sort_by_key(|diagnostic| (diagnostic.primary.span, diagnostic.code));
+        // What is wrong in a prototype is one error, however often it is used.
+        diagnostics.dedup_by(|again, first| {
+            (again.code, &again.primary, &again.message) == (first.code, &first.primary, &first.message)
+        });
+        let scene = lowered.scene.filter(|_| !diagnostic::any_errors(&diagnostics));
+        Compiled {
+            scene,
+            inventory,
+            origins: things.origins,
+            diagnostics,
+            notes: lowered.notes,
+            contents: lowered.contents,
+            main: self.main,
+            allows: program.allows,
+            marks: lowered.marks,
+            places: lowered.places,
         }
     }
-    let unused = allow::allow(&program.allows, &mut diagnostics);
-    diagnostics.extend(unused);
-    diagnostics.sort_by_key(|diagnostic| (diagnostic.primary.span, diagnostic.code));
-    // What is wrong in a prototype is one error, however often it is used.
-    diagnostics.dedup_by(|again, first| {
-        (again.code, &again.primary, &again.message) == (first.code, &first.primary, &first.message)
-    });
-    let scene = lowered.scene.filter(|_| !diagnostic::any_errors(&diagnostics));
-    Compiled {
-        scene,
-        inventory: Inventory::of(&program, sources, &things),
-        origins: things.origins,
-        diagnostics,
-        notes: lowered.notes,
-        contents: lowered.contents,
-        main,
-        allows: program.allows,
-        marks: lowered.marks,
-        places: lowered.places,
+
+    fn is_stopped(&self) -> bool {
+        self.stop.is_some_and(|stop| stop())
     }
 }
 
 impl Compiled {
     /// What there is to say of a source that is not worth compiling.
     pub fn refused(diagnostic: Diagnostic) -> Compiled {
+        let main = diagnostic.primary.span.source;
+        Compiled { diagnostics: vec![diagnostic], ..Compiled::unfinished(main) }
+    }
+
+    /// Nothing: nobody waits for it any more.
+    fn unfinished(main: SourceId) -> Compiled {
         Compiled {
             scene: None,
             origins: Origins::default(),
             inventory: Inventory::default(),
             notes: vec![],
             contents: Contents::default(),
-            main: diagnostic.primary.span.source,
-            diagnostics: vec![diagnostic],
+            main,
+            diagnostics: vec![],
             allows: vec![],
             marks: Marks::default(),
             places: Places::default(),

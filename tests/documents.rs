@@ -4,9 +4,9 @@
 use rt_lang::check::{self, Function};
 use rt_lang::diagnostic::{Code, Severity};
 use rt_lang::files::{FileError, FilePath, Files};
-use rt_lang::schema::{Category, Field, FieldType, KINDS, KindId, PLACED, Preset};
+use rt_lang::schema::{Category, Field, FieldType, KINDS, KindId, PLACED};
 use rt_lang::source::{Source, Sources};
-use rt_lang::{Options, color, compile, units};
+use rt_lang::{Options, color, compile, ide, units};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -141,36 +141,12 @@ fn words(text: &mut String, field: &str, ty: FieldType) {
 fn fields_table<'a>(fields: impl Iterator<Item = &'a Field>) -> String {
     let mut table = String::from("| field | wants | default | |\n|---|---|---|---|\n");
     for field in fields {
-        let default = match field.default {
-            Preset::Required => "must be given".to_string(),
-            Preset::Absent(words) => words.to_string(),
-            Preset::Value(value) => format!("`{value}`"),
-        };
-        let show = |x: f64| in_unit(x, field.ty);
-        let range = match (field.range.low, field.range.high, field.range.above) {
-            (f64::NEG_INFINITY, f64::INFINITY, _) => String::new(),
-            (low, f64::INFINITY, true) => format!(", above {}", show(low)),
-            (low, f64::INFINITY, false) => format!(", {} or more", show(low)),
-            (low, high, true) => format!(", above {} and at most {}", show(low), show(high)),
-            (low, high, false) => format!(", from {} to {}", show(low), show(high)),
-        };
+        let (default, range) = (ide::default(field), ide::range(field));
         let doc = field.doc.replace('\n', " ").replace("  ", " ");
         let wants = rt_lang::check::describe_wanted(field.ty);
         writeln!(table, "| `{}` | {wants}{range} | {default} | {doc} |", field.name).unwrap();
     }
     table
-}
-
-/// A bound in the unit that a writer would use.
-fn in_unit(x: f64, ty: FieldType) -> String {
-    match ty {
-        FieldType::Scalar(dim) if dim != units::NONE && x != 0.0 => {
-            let unit = dim.example_unit();
-            let shown = x / units::parse_unit(&unit).unwrap().factor;
-            format!("{}{unit}", (shown * 1e6).round() / 1e6)
-        }
-        _ => x.to_string(),
-    }
 }
 
 #[test]

@@ -19,4 +19,15 @@ impl Files for Folder {
         let bytes = std::fs::read(self.0.join(path.as_str())).map_err(|_| FileError::Missing)?;
         if bytes.len() > most { Err(FileError::TooLarge(most)) } else { Ok(bytes.into()) }
     }
+
+    fn list(&self, folder: &str) -> Vec<String> {
+        let entries = std::fs::read_dir(self.0.join(folder)).into_iter().flatten();
+        let name = |entry: std::fs::DirEntry| {
+            let name = entry.file_name().into_string().unwrap();
+            if entry.path().is_dir() { format!("{name}/") } else { name }
+        };
+        let mut names: Vec<String> = entries.map(|entry| name(entry.unwrap())).collect();
+        names.sort();
+        names
+    }
 }

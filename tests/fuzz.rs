@@ -1,6 +1,6 @@
 //! Replays what fuzzing found, and the cases, from which it starts.
 
-use crate::invariants;
+use crate::{invariants, script};
 use std::path::Path;
 
 /// Texts of a folder, at most so long: a bounded replay.
@@ -18,6 +18,7 @@ fn found_texts_hold() {
     texts("fuzz/corpus/parse").iter().for_each(|text| invariants::parse(text));
     texts("fuzz/corpus/fmt").iter().for_each(|text| invariants::fmt(text));
     texts("fuzz/corpus/compile").iter().for_each(|text| invariants::compile(text));
+    texts("fuzz/corpus/edits").iter().for_each(|text| invariants::ask(&script::run(text.as_bytes())));
 }
 
 #[test]
@@ -26,6 +27,7 @@ fn cases_hold() {
         for text in texts(folder) {
             invariants::parse(&text);
             invariants::fmt(&text);
+            invariants::ask(&text);
         }
     }
 }

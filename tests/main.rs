@@ -11,15 +11,21 @@ mod documents;
 mod editors;
 mod folder;
 mod language;
+#[path = "../src/cli/lsp/document.rs"]
+mod document;
 mod dump;
+mod edits;
 mod expand;
 mod export;
 mod format;
 mod fuzz;
+mod ide;
 #[path = "../fuzz/invariants.rs"]
 mod invariants;
 mod oracle;
 mod parse;
 mod pictures;
 mod scenes;
+#[path = "../fuzz/script.rs"]
+mod script;
 mod why;

@@ -55,8 +55,8 @@ impl<'a> Checker<'a> {
     }
 
     /// Opens a scope with these statements and checks them. [`Checker::close`] ends it.
-    pub(super) fn open(&mut self, items: &[Item], place: Place) -> Block {
-        let scope = self.declare(items, place);
+    pub(super) fn open(&mut self, items: &[Item], place: Place, span: Span) -> Block {
+        let scope = self.declare(items, place, span);
         let declared: BTreeMap<SmolStr, usize> =
             scope.names.iter().map(|(name, &known)| (name.clone(), scope.known[known].item)).collect();
         let settings = if place == Place::Main { self.settings } else { &[] };
@@ -113,7 +113,7 @@ impl<'a> Checker<'a> {
     /// A body of `for` or `if`.
     fn branch(&mut self, body: &ast::Body, word: &str) -> Block {
         let (items, fields) = apart(&body.entries);
-        let mut block = self.open(&items, Place::Branch);
+        let mut block = self.open(&items, Place::Branch, body.span);
         self.stray(&items, &fields, word);
         self.close(Some(&mut block));
         block
@@ -124,7 +124,7 @@ impl<'a> Checker<'a> {
         let scope = self.current();
         let names = scope.names.iter().map(|(name, &known)| {
             let known = &scope.known[known];
-            (name.clone(), InsideName { slot: known.slot, ty: known.ty.clone() })
+            (name.clone(), InsideName { slot: known.slot, ty: known.ty.clone(), place: known.name.span })
         });
         let inside = Inside { names: names.collect() };
         self.program.insides.push(inside);
@@ -226,7 +226,7 @@ impl<'a> Checker<'a> {
             return StatementKind::Invalid;
         }
         let item = if item == Type::Scalar(Element::Zero) { Type::Scalar(Element::Int) } else { item };
-        let mut scope = self.scope(Place::Parameters);
+        let mut scope = self.scope(Place::Parameters, body.span);
         let dim = match item {
             Type::Scalar(element) => element.dim(),
             _ => units::NONE,

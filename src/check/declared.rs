@@ -54,7 +54,7 @@ impl Declared {
     }
 
     /// What a param is declared as that takes values of a type.
-    pub(super) fn of(ty: &Type) -> Option<Declared> {
+    pub fn of(ty: &Type) -> Option<Declared> {
         match ty {
             Type::Scalar(Element::Int) => Some(Declared::Field(FieldType::Int)),
             Type::List(item) if **item != Type::Invalid => {

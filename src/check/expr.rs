@@ -51,7 +51,10 @@ impl Checker<'_> {
                 (None, None) => (ExprKind::Invalid, Type::Invalid),
             },
             Tree::Name(name) => match self.lookup(name) {
-                Some(found) => (found.kind, found.ty),
+                Some(found) => {
+                    self.note(span, found.meaning);
+                    (found.kind, found.ty)
+                }
                 None => {
                     let name = Name { text: name.clone(), span };
                     let diagnostic = match self.is_setting(span) {
@@ -77,6 +80,7 @@ impl Checker<'_> {
             Tree::Binary { operator, at, left, right } => self.binary(*operator, *at, left, right),
         };
         let kind = if ty == Type::Invalid { ExprKind::Invalid } else { kind };
+        self.note_type(span, &ty);
         (Expr { kind, span }, ty)
     }
 

@@ -1,5 +1,6 @@
 //! The fields of what may stand before `{`: of built-in kinds, of parts, and of what may be any of them.
 
+use super::notes::Meaning;
 use super::program::{FieldPlace, PartId};
 use super::types::{Kind, Type};
 use super::{Checker, errors};
@@ -20,6 +21,18 @@ impl Checker<'_> {
             Kind::Thing => placed(),
             Kind::Material => None,
         }
+    }
+
+    /// What the name of a field of a kind means.
+    pub(super) fn meaning(&self, kind: Kind, place: FieldPlace) -> Option<Meaning> {
+        Some(match (kind, place) {
+            (Kind::Part(part), FieldPlace::Param(index)) => {
+                Meaning::Declared(self.program.part(part).params[index].span)
+            }
+            (Kind::BuiltIn(kind), FieldPlace::Index(index)) => Meaning::Field(kind, index),
+            (_, FieldPlace::Placed(index)) => Meaning::Placed(index),
+            _ => return None,
+        })
     }
 
     /// What a thing of the kind is called in a message.

@@ -1,6 +1,7 @@
 //! Things: their kind, their fields, and what must hold between these.
 
 use super::block::{path_span, path_text};
+use super::notes::{Meaning, word_of};
 use super::program::{Around, Base, Expr, ExprKind, FieldPlace, Make, Written};
 use super::scope::{Item, Place, built_in};
 use super::types::{Element, FieldSet, Kind, Making, Type};
@@ -21,8 +22,11 @@ impl Checker<'_> {
         let Sorted { items, parts, misplaced } =
             self.sort_entries(&construct.body.entries, known.map(|making| making.kind), holds);
         let place = if holds { Place::Group } else { Place::Fields };
-        let mut block = (!items.is_empty()).then(|| self.open(&items, place));
+        let mut block = (!items.is_empty()).then(|| self.open(&items, place, construct.body.span));
         let mut make = Unfinished { fields: vec![], given: FieldSet::default() };
+        if let Some(making) = known {
+            self.note_body(construct.body.span, making.kind, making.given);
+        }
         match known {
             Some(making) => self.fields(&mut make, making, &construct.body.entries, &parts),
             None => {
@@ -68,6 +72,7 @@ impl Checker<'_> {
     fn kind_of(&mut self, path: &ast::Path) -> (Base, Option<Making>) {
         let name = &path.first;
         if let Some(kind) = schema::kind(&name.text) {
+            self.note(name.span, Some(Meaning::Kind(kind)));
             // Which of the two is meant is not known; that the name is taken was reported.
             if self.hiding.contains(&kind) && self.is_declared(&name.text) {
                 return (Base::Invalid, None);
@@ -91,6 +96,7 @@ impl Checker<'_> {
                 .and_then(|guess| schema::kind(guess.name));
             return (Base::Invalid, guess.map(built_in));
         };
+        self.note(name.span, found.meaning);
         let mut ty = found.ty;
         let mut value = found.kind;
         let mut around = Around::Up(found.up);
@@ -106,8 +112,10 @@ impl Checker<'_> {
                 return (Base::Invalid, None);
             };
             value = ExprKind::FileName { file, slot: exported.slot };
+            let place = exported.place;
             ty = exported.ty.clone();
             around = Around::File(file);
+            self.note(inner.span, Some(Meaning::Declared(place)));
         }
         match ty {
             Type::Made(making) => {
@@ -229,6 +237,7 @@ impl Checker<'_> {
                 }
                 continue;
             };
+            self.note(name.span, self.meaning(kind, field));
             let bit = self.bit(kind, field);
             if std::mem::take(&mut guessed[bit]) {
                 // The one before was something else, which was reported.
@@ -355,8 +364,9 @@ impl Checker<'_> {
     pub(super) fn field_value(&mut self, field: &'static Field, value: &ast::Expr) -> Expr {
         match &value.kind {
             Tree::Name(name) => {
-                if let Some(word) = find_word(field.ty, name) {
-                    return Expr { kind: ExprKind::Word(word), span: value.span };
+                if let Some(word) = word_of(field.ty, name) {
+                    self.note(value.span, Some(Meaning::Word(word)));
+                    return Expr { kind: ExprKind::Word(word.name), span: value.span };
                 }
                 let words = words(field.ty);
                 if !words.is_empty() && !self.is_declared(name) {
@@ -485,10 +495,6 @@ fn words(ty: FieldType) -> Vec<&'static str> {
         FieldType::OneOf(types) => types.iter().flat_map(|ty| words(*ty)).collect(),
         _ => vec![],
     }
-}
-
-pub(super) fn find_word(ty: FieldType, name: &str) -> Option<&'static str> {
-    words(ty).into_iter().find(|word| *word == name)
 }
 
 /// A unit to suggest for a bare number in a field.

@@ -11,6 +11,7 @@ mod expr;
 mod fields;
 mod functions;
 mod make;
+mod notes;
 mod order;
 mod part;
 mod program;
@@ -25,6 +26,7 @@ mod unknown;
 
 pub use declared::{Declared, TYPES};
 pub use functions::Function;
+pub use notes::{Filled, Home, Meaning, Notes, Visible};
 pub use program::*;
 pub use setting::{Setting, blame, settings};
 pub use textures::parameters as texture_parameters;
@@ -50,17 +52,22 @@ pub fn check(
     settings: &[Setting],
 ) -> (Program, Vec<Diagnostic>) {
     let mut checker = Checker::new(files, sources, settings);
-    for (index, file) in imported.files.iter().enumerate() {
-        let main = index + 1 == imported.files.len();
-        let ids = file.imports.iter().map(|(statement, file)| (*statement, FileId(*file as u32)));
-        checker.imports = ids.collect();
-        let part = checker.file(&file.tree, main);
-        checker.program.files.push(program::File { source: file.source, part });
-        if main {
-            checker.unknown_settings(&file.tree);
-        }
-    }
+    checker.all(imported);
     (checker.program, checker.diagnostics)
+}
+
+/// The same, with what it learns of the names.
+pub fn study(
+    files: &dyn Files,
+    sources: &Sources,
+    imported: &Imported,
+    settings: &[Setting],
+) -> (Program, Vec<Diagnostic>, Notes) {
+    let mut checker = Checker::new(files, sources, settings);
+    checker.notes = Some(Box::default());
+    checker.all(imported);
+    let notes = checker.notes.map(|notes| notes.finish()).unwrap_or_default();
+    (checker.program, checker.diagnostics, notes)
 }
 
 /// Checks one expression by itself, as the value of a field: nothing but what is built in is in scope.
@@ -104,6 +111,8 @@ struct Checker<'a> {
     guesses: Cell<usize>,
     /// How many expressions and things were checked: what evaluating a body costs.
     nodes: u64,
+    /// What is kept of the names, for who asks for it.
+    notes: Option<Box<Notes>>,
 }
 
 /// The most comparisons of unknown names with declared ones; beyond, only built-in names are suggested. It keeps
@@ -131,6 +140,21 @@ impl<'a> Checker<'a> {
             cameras: vec![],
             guesses: Cell::new(MAX_GUESSES),
             nodes: 0,
+            notes: None,
+        }
+    }
+
+    /// Checks every file, the one that is drawn last.
+    fn all(&mut self, imported: &Imported) {
+        for (index, file) in imported.files.iter().enumerate() {
+            let main = index + 1 == imported.files.len();
+            let ids = file.imports.iter().map(|(statement, file)| (*statement, FileId(*file as u32)));
+            self.imports = ids.collect();
+            let part = self.file(&file.tree, main);
+            self.program.files.push(program::File { source: file.source, part });
+            if main {
+                self.unknown_settings(&file.tree);
+            }
         }
     }
 

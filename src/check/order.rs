@@ -1,7 +1,7 @@
 //! In which order the statements of a scope can be evaluated.
 
 use super::functions::by_name;
-use super::make::find_word;
+use super::notes::word_of;
 use super::scope::Item;
 use crate::schema;
 use crate::syntax::ast::{self, Entry, ExprKind as Tree, StatementKind as Kind};
@@ -82,7 +82,7 @@ fn names_in_construct(construct: &ast::Construct, visit: &mut impl FnMut(&str)) 
 fn is_word(field: &ast::Field) -> bool {
     let Tree::Name(word) = &field.value.kind else { return false };
     let fields = schema::KINDS.iter().flat_map(|kind| kind.fields);
-    fields.filter(|known| known.name == field.name.text).any(|known| find_word(known.ty, word).is_some())
+    fields.filter(|known| known.name == field.name.text).any(|known| word_of(known.ty, word).is_some())
 }
 
 fn names_in(expr: &ast::Expr, visit: &mut impl FnMut(&str)) {

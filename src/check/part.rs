@@ -2,6 +2,7 @@
 
 use super::block::apart;
 use super::declared::Declared;
+use super::notes::Meaning;
 use super::program::StatementKind;
 use super::program::{Allow, Expr, ExprKind, FileId, FunctionBody, FunctionId, Param, Part, PartId};
 use super::scope::{Item, Place};
@@ -24,7 +25,7 @@ impl<'a> Checker<'a> {
         let (items, fields) = apart(&tree.body.entries);
         let place = if main { Place::Main } else { Place::Imported };
         self.cameras = items.iter().filter_map(camera_name).collect();
-        let part = self.body("", &items, &fields, place, None);
+        let part = self.body("", &items, &fields, place, tree.body.span, None);
         self.say_closed();
         part
     }
@@ -42,7 +43,7 @@ impl<'a> Checker<'a> {
             return (StatementKind::Nothing, Type::Invalid);
         }
         let (items, fields) = apart(&body.entries);
-        let part = self.body(&name.text, &items, &fields, Place::Part, statement.doc.clone());
+        let part = self.body(&name.text, &items, &fields, Place::Part, body.span, statement.doc.clone());
         (StatementKind::Nothing, Type::Part(part))
     }
 
@@ -52,6 +53,7 @@ impl<'a> Checker<'a> {
         items: &[Item],
         fields: &[&ast::Field],
         place: Place,
+        span: Span,
         doc: Option<smol_str::SmolStr>,
     ) -> PartId {
         let before = self.nodes;
@@ -67,7 +69,7 @@ impl<'a> Checker<'a> {
             })
             .collect();
         self.begin_frame();
-        let mut block = self.open(items, place);
+        let mut block = self.open(items, place, span);
         let fields = match place {
             Place::Part => self.part_fields(fields),
             _ => {
@@ -96,6 +98,7 @@ impl<'a> Checker<'a> {
                 self.infer(&field.value);
                 continue;
             };
+            self.note(field.name.span, Some(Meaning::Placed(index)));
             let value = self.field_value(&PLACED[index], &field.value);
             match first[index] {
                 Some(first) => self.report(errors::repeated(&field.name, first)),
@@ -261,7 +264,7 @@ impl<'a> Checker<'a> {
         }
         let before = self.nodes;
         self.begin_frame();
-        let mut scope = self.scope(Place::Parameters);
+        let mut scope = self.scope(Place::Parameters, statement.span);
         let mut taken = vec![];
         for parameter in parameters {
             let declared = self.declared(&parameter.ty);

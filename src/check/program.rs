@@ -147,6 +147,8 @@ pub struct InsideName {
     pub slot: usize,
     /// What it is.
     pub ty: Type,
+    /// Where it is declared.
+    pub place: Span,
 }
 
 /// `@allow(code, "why")` before a statement.

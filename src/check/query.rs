@@ -3,6 +3,7 @@
 use super::block::path_span;
 use super::declared::field_type;
 use super::functions;
+use super::notes::Meaning;
 use super::program::{Around, Corner, FieldPlace, FileId};
 use super::types::{Element, Kind, Making, Type};
 use super::{Checker, Expr, ExprKind, errors};
@@ -132,14 +133,21 @@ impl Checker<'_> {
                     self.report(errors::thing_of_file(member));
                     INVALID
                 }
-                Some(name) => (ExprKind::FileName { file: *file, slot: name.slot }, name.ty.clone()),
+                Some(name) => {
+                    let (name, meaning) = (name.clone(), Meaning::Declared(name.place));
+                    self.note(member.span, Some(meaning));
+                    (ExprKind::FileName { file: *file, slot: name.slot }, name.ty)
+                }
                 None => {
                     self.report_not_in_file(*file, member, "name");
                     INVALID
                 }
             },
             Type::Tuple(count, element) => match axis(member).filter(|axis| axis < count) {
-                Some(axis) => (ExprKind::Component { value, axis }, Type::Scalar(*element)),
+                Some(axis) => {
+                    self.note(member.span, Some(Meaning::Component));
+                    (ExprKind::Component { value, axis }, Type::Scalar(*element))
+                }
                 None => self.no_member(member, &ty),
             },
             Type::Bounds => {
@@ -150,12 +158,14 @@ impl Checker<'_> {
                     "size" => Corner::Size,
                     _ => return self.no_member(member, &ty),
                 };
+                self.note(member.span, Some(Meaning::Component));
                 (ExprKind::Corner { value, corner }, Type::Tuple(3, Element::Quantity(units::LENGTH)))
             }
             Type::Row(table) => {
                 let table = self.program.tables[table.index()].clone();
                 match table.columns.iter().position(|column| column.name == member.text) {
                     Some(column) => {
+                        self.note(member.span, Some(Meaning::Component));
                         let ty = super::table::column_type(&table.columns[column]);
                         (ExprKind::Column { value, column }, ty)
                     }
@@ -192,6 +202,7 @@ impl Checker<'_> {
                 self.report(errors::hidden_inside(member, &name.ty));
                 return INVALID;
             }
+            self.note(member.span, Some(Meaning::Declared(name.place)));
             return (ExprKind::Inside { value: Box::new(value), slot: name.slot }, name.ty);
         }
         if found.is_some() {
@@ -220,6 +231,7 @@ impl Checker<'_> {
             (_, FieldPlace::Placed(index)) => self.known_field(&PLACED[index], true, member),
             _ => None,
         };
+        self.note(member.span, self.meaning(making.kind, place));
         let Some(ty) = ty else { return INVALID };
         (ExprKind::Field { value: Box::new(value), field: place }, ty)
     }
@@ -254,6 +266,9 @@ impl Checker<'_> {
     /// A call: of a built-in function, or of a declared one.
     pub(super) fn call(&mut self, path: &ast::Path, arguments: &[Argument], span: Span) -> (ExprKind, Type) {
         if path.rest.is_empty() {
+            if let Some(function) = functions::by_name(&path.first.text) {
+                self.note(path.first.span, Some(Meaning::Function(function)));
+            }
             if &*path.first.text == "table" {
                 return self.table(arguments, span);
             }
@@ -279,6 +294,7 @@ impl Checker<'_> {
             self.report(diagnostic);
             return None;
         };
+        self.note(path.first.span, found.meaning);
         let (mut ty, mut around) = (found.ty, Around::Up(found.up));
         for inner in &path.rest {
             let Type::File(file) = ty else { break };
@@ -286,7 +302,9 @@ impl Checker<'_> {
                 self.report_not_in_file(file, inner, "function");
                 return None;
             };
+            let place = name.place;
             (ty, around) = (name.ty.clone(), Around::File(file));
+            self.note(inner.span, Some(Meaning::Declared(place)));
         }
         match ty {
             Type::Function(function) => Some((function, around)),

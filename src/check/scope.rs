@@ -1,9 +1,11 @@
 //! Names: who declares them, what hides what, and whether they are used.
 
+use super::notes::{Home, Meaning, Visible, color_of};
 use super::program::{Block, StatementKind};
 use super::types::{Kind, Making, Type};
 use super::{Checker, ExprKind, errors, functions};
 use crate::schema;
+use crate::span::Span;
 use crate::syntax::Rows;
 use crate::syntax::ast::{self, Name, StatementKind as Tree};
 use crate::{color, syntax, units};
@@ -15,6 +17,8 @@ use std::sync::Arc;
 pub(super) struct Scope {
     /// What holds it.
     pub(super) place: Place,
+    /// The text in which its names mean what they do.
+    span: Span,
     /// Index into `known`.
     pub(super) names: BTreeMap<SmolStr, usize>,
     pub(super) known: Vec<Known>,
@@ -65,6 +69,8 @@ pub(super) struct Found {
     pub(super) ty: Type,
     /// How many frames out it is.
     pub(super) up: usize,
+    /// What it means, for who asks later.
+    pub(super) meaning: Option<Meaning>,
 }
 
 impl<'t> Item<'t> {
@@ -117,8 +123,8 @@ impl<'t> Item<'t> {
 
 impl Checker<'_> {
     /// Begins a scope that declares nothing yet.
-    pub(super) fn scope(&self, place: Place) -> Scope {
-        Scope { place, names: BTreeMap::new(), known: vec![], level: self.frames.len() }
+    pub(super) fn scope(&self, place: Place, span: Span) -> Scope {
+        Scope { place, span, names: BTreeMap::new(), known: vec![], level: self.frames.len() }
     }
 
     /// The innermost scope.
@@ -158,8 +164,8 @@ impl Checker<'_> {
     }
 
     /// Declares the names of items, and gives which of them each known name belongs to.
-    pub(super) fn declare(&mut self, items: &[Item], place: Place) -> Scope {
-        let mut scope = self.scope(place);
+    pub(super) fn declare(&mut self, items: &[Item], place: Place, span: Span) -> Scope {
+        let mut scope = self.scope(place, span);
         for (item, statement) in items.iter().enumerate() {
             let (Item::Statement(_), Some(name)) = (statement, statement.name()) else { continue };
             let free = statement.drawn() || place == Place::Imported && !statement.param();
@@ -193,6 +199,7 @@ impl Checker<'_> {
     /// refers to it, or may by a path.
     pub(super) fn close(&mut self, block: Option<&mut Block>) {
         let Some(scope) = self.scopes.pop() else { return };
+        self.note_scope(&scope);
         for known in scope.known.iter().filter(|known| !known.used && !known.free) {
             self.report(errors::unused(&known.name, &known.ty));
         }
@@ -210,6 +217,23 @@ impl Checker<'_> {
                 *slot = None;
             }
         }
+    }
+
+    /// Notes what a scope declares.
+    fn note_scope(&mut self, scope: &Scope) {
+        let Some(notes) = &mut self.notes else { return };
+        let known = || scope.known.iter();
+        notes.declared.extend(known().map(|known| (known.name.span, known.ty.clone())));
+        let names = known().map(|known| (known.name.text.clone(), known.name.span, known.ty.clone()));
+        let place = match scope.place {
+            Place::Main | Place::Imported => Home::File,
+            Place::Part => Home::Part,
+            Place::Group => Home::Group,
+            Place::Branch => Home::Branch,
+            Place::Fields => Home::Thing,
+            Place::Parameters => Home::Head,
+        };
+        notes.scopes.push(Visible { span: scope.span, place, names: names.collect() });
     }
 
     /// Whether it is a thing with the name of a kind, whose own kind is unknown: `new sphere { … }`.
@@ -267,10 +291,12 @@ impl Checker<'_> {
                 known.used = true;
                 let up = level - scope.level;
                 let kind = ExprKind::Name { up, slot: known.slot };
-                return Some(Found { kind, ty: known.ty.clone(), up });
+                let meaning = Some(Meaning::Declared(known.name.span));
+                return Some(Found { kind, ty: known.ty.clone(), up, meaning });
             }
         }
-        color::named(name).map(|color| Found { kind: ExprKind::Color(color), ty: Type::Color, up: 0 })
+        let color = color::named(name)?;
+        Some(Found { kind: ExprKind::Color(color), ty: Type::Color, up: 0, meaning: color_of(name) })
     }
 
     /// Whether a scope declares this name.

@@ -12,7 +12,7 @@ use rt_lang::schema::Tonemap;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 pub use tools::{
-    Check, Completions, Expand, Explain, Export, Info, Init, Man, Messages, Reading, Show, Viewpoint,
+    Check, Completions, Expand, Explain, Export, Info, Init, Lsp, Man, Messages, Reading, Show, Viewpoint,
 };
 pub use values::Denied;
 use values::{address, aov, crop, depths, exposure, samples, seed, size, stops, threads, tonemaps};
@@ -107,6 +107,10 @@ pub enum Command {
     /// stay as they are.
     #[command(after_help = FMT_EXAMPLES)]
     Fmt(Fmt),
+    /// Serves an editor: diagnostics while you type, hovers, completion, renaming and more, over the Language Server
+    /// Protocol on standard input and output.
+    #[command(after_help = tools::LSP_EXAMPLES)]
+    Lsp(Lsp),
 }
 
 const BUILD_EXAMPLES: &str = "\

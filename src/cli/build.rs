@@ -301,35 +301,61 @@ fn stage(job: &Job, scene: &Scene, window: Window, interrupt: &Interrupt) -> Res
 
 /// Traces a window, showing how far it is.
 fn trace(context: &Context, job: &Job, from: Provenance, window: Window) -> Result<Traced, Cancelled> {
-    let (scene, arguments) = (from.scene, context.arguments);
+    let Build { aov, feedback, .. } = context.arguments;
     let control = Arc::new(Control::new());
     context.interrupt.watch(control.clone());
     let shown = context.terminal.interactive && !context.arguments.quiet;
     let _progress = shown.then(|| Progress::watch(control.clone(), job.scene.display().to_string()));
-    context.threads.install(|| {
-        let tracer = Tracer::new(scene);
-        let prepass = tracer.prepass();
-        let chosen = chosen_stops(&prepass);
-        let stops = scene.develop.exposure.unwrap_or(chosen);
-        let shown = Shown { stops, tonemap: scene.develop.tonemap };
-        let rendered = tracer.render(window, scene.trace.target, &prepass, shown, &control)?;
-        let (offset, size) = ([window.x, window.y], [window.width, window.height]);
-        let mean = |x, y| rendered.film.mean(x, y);
-        let picture = Picture::gather(scene.trace.size, offset, size, mean);
-        let picture = match scene.trace.background {
-            Background::Sky => picture,
-            Background::Transparent => picture.with_alpha(|x, y| rendered.film.alpha(x, y)),
-        };
-        let Rendered { film, samples, mut noise, target_met } = rendered;
-        let of_first = arguments.aov.iter().any(|aov| aov.is_of_first_hits());
-        let first = of_first.then(|| tracer.first_hits(window, samples, &control)).transpose()?;
-        let channels = aov::channels(&arguments.aov, &film, first.as_ref(), from);
-        if arguments.feedback {
-            noise = film.noise(stops, scene.develop.tonemap);
-        }
-        let (fitting, cut) = (chosen, prepass.cut);
-        Ok(Traced { picture, samples, noise, target_met, stops, fitting, cut, channels, feedback: None })
-    })
+    context.threads.install(|| take(from, window, aov, *feedback, &control))
+}
+
+/// Traces a window, with channels of what it shows besides its light, and with the noise of what is shown where feedback is
+/// wanted.
+fn take(
+    from: Provenance,
+    window: Window,
+    aovs: &[Aov],
+    feedback: bool,
+    control: &Control,
+) -> Result<Traced, Cancelled> {
+    let scene = from.scene;
+    let tracer = Tracer::new(scene);
+    let prepass = tracer.prepass();
+    let chosen = chosen_stops(&prepass);
+    let stops = scene.develop.exposure.unwrap_or(chosen);
+    let shown = Shown { stops, tonemap: scene.develop.tonemap };
+    let rendered = tracer.render(window, scene.trace.target, &prepass, shown, control)?;
+    let (offset, size) = ([window.x, window.y], [window.width, window.height]);
+    let mean = |x, y| rendered.film.mean(x, y);
+    let picture = Picture::gather(scene.trace.size, offset, size, mean);
+    let picture = match scene.trace.background {
+        Background::Sky => picture,
+        Background::Transparent => picture.with_alpha(|x, y| rendered.film.alpha(x, y)),
+    };
+    let Rendered { film, samples, mut noise, target_met } = rendered;
+    let of_first = aovs.iter().any(|aov| aov.is_of_first_hits());
+    let first = of_first.then(|| tracer.first_hits(window, samples, control)).transpose()?;
+    let channels = aov::channels(aovs, &film, first.as_ref(), from);
+    if feedback {
+        noise = film.noise(stops, scene.develop.tonemap);
+    }
+    let (fitting, cut) = (chosen, prepass.cut);
+    Ok(Traced { picture, samples, noise, target_met, stops, fitting, cut, channels, feedback: None })
+}
+
+/// Makes the picture of a scene, and writes it where it goes. None where it was cancelled.
+pub fn make(
+    from: Provenance,
+    target: &Target,
+    control: &Control,
+    interrupt: &Interrupt,
+) -> Result<Option<()>, Problem> {
+    let scene = from.scene;
+    let window = Window::whole(scene.trace.size);
+    let job = Job { scene: PathBuf::new(), targets: vec![target.clone()] };
+    let staged = stage(&job, scene, window, interrupt)?;
+    let Ok(traced) = take(from, window, &[], false, control) else { return Ok(None) };
+    write(&traced.picture, &facts(scene, &traced), &traced.channels, Depth::Eight, staged).map(Some)
 }
 
 /// The exposure where the scene gives none. Two digits, so that the number that is printed gives the very picture when

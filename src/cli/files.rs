@@ -12,6 +12,9 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+/// The most names of a folder that are listed.
+const MOST_NAMES: usize = 10_000;
+
 /// Files below a folder, each read once.
 #[derive(Debug)]
 pub struct Disk {
@@ -132,6 +135,19 @@ impl Files for Disk {
         answer
     }
 
+    fn list(&self, folder: &str) -> Vec<String> {
+        let inside =
+            fs::canonicalize(self.root.join(folder)).ok().filter(|real| real.starts_with(&self.root));
+        let entries = inside.and_then(|real| fs::read_dir(real).ok()).into_iter().flatten().flatten();
+        let named = |entry: fs::DirEntry| {
+            let name = entry.file_name().into_string().ok().filter(|name| !name.starts_with('.'))?;
+            Some(if entry.path().is_dir() { name + "/" } else { name })
+        };
+        let mut names: Vec<String> = entries.take(MOST_NAMES).filter_map(named).collect();
+        names.sort();
+        names
+    }
+
     fn name(&self, path: &FilePath) -> String {
         self.named(path).display().to_string()
     }
@@ -187,6 +203,18 @@ mod tests {
         assert_eq!(disk.read(&path("a.rt"), 100).as_deref(), Ok(&b"abc"[..]));
         assert_eq!(disk.read(&path("a.rt"), 2), Err(FileError::TooLarge(2)));
         assert_eq!(disk.read(&path("rooms/hall.rt"), 100).as_deref(), Ok(&b"hall"[..]));
+    }
+
+    #[test]
+    fn folders_below_the_root_are_listed() {
+        let (_folder, disk) = disk();
+        assert_eq!(
+            (disk.list(""), disk.list("rooms")),
+            (vec!["a.rt".into(), "rooms/".into()], vec!["hall.rt".into()])
+        );
+        for none in ["..", "/", "none", "a.rt"] {
+            assert_eq!(disk.list(none), Vec::<String>::new(), "{none}");
+        }
     }
 
     #[test]

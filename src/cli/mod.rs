@@ -11,6 +11,8 @@
 //! | [`interrupt`] | Ctrl-C |
 //! | [`terminal`] | the one writer to standard error |
 //! | [`progress`] | how far a picture is |
+//! | [`live`] | the picture that follows the text |
+//! | [`lsp`] | the language server |
 //! | [`build`], [`check`], [`develop`], [`expand`], [`explain`], [`export`], [`fmt`], [`info`], [`init`], [`manual`], [`why`] | the commands |
 
 mod args;
@@ -27,6 +29,7 @@ mod fmt;
 mod input;
 mod interrupt;
 mod live;
+mod lsp;
 mod manual;
 mod messages;
 mod progress;
@@ -104,6 +107,7 @@ pub fn main() -> ExitCode {
         Command::Init(init) => init::run(&init),
         Command::Completions(completions) => manual::completions(&completions),
         Command::Man(man) => manual::man(&man),
+        Command::Lsp(lsp) => lsp::run(&lsp, &interrupt),
         Command::Fmt(fmt) => fmt::run(&fmt, terminal, &interrupt),
         Command::Why(why) => why::run(&why, terminal),
     };

@@ -99,6 +99,7 @@ impl<'p> Evaluator<'p> {
             };
             mask |= 1 << index;
             let value = self.expr(expr);
+            self.see(expr, &value);
             let problem = errors::out_of_range(kind, kind.field(index), &value, expr);
             self.out().values.push(value);
             if let Some(problem) = problem {
@@ -276,6 +277,7 @@ impl<'p> Evaluator<'p> {
     /// A field of [`PLACED`] by its index there.
     pub(super) fn placed_field(&mut self, index: usize, expr: &crate::check::Expr) -> Given {
         let value = self.expr(expr);
+        self.see(expr, &value);
         let value = match errors::out_of_range(group::KIND, &PLACED[index], &value, expr) {
             Some(diagnostic) => self.report(diagnostic),
             None => value,

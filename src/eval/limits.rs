@@ -46,6 +46,7 @@ impl Evaluator<'_> {
         if self.steps > self.limits.steps && !self.halted {
             self.halt(errors::too_many_steps(self.limits.steps, span));
         }
+        self.halted |= self.is_stopped();
         !self.halted
     }
 

@@ -21,6 +21,7 @@ mod statement;
 mod texture;
 mod things;
 mod value;
+mod watch;
 
 pub use limits::Limits;
 pub use list::List;
@@ -30,6 +31,7 @@ pub use read::{Aim, Focus, Read};
 pub use texture::{MAX_TEXTURE_LEVELS, Paint, Pattern, Texture};
 pub use things::{Thing, Things};
 pub use value::{Fields, Given, Made, PartValue, Placed, ThingId, Value};
+pub use watch::{Seen, Values};
 
 use crate::check::{Expr, ExprKind, Part, Program};
 use crate::diagnostic::{Code, Diagnostic};
@@ -42,14 +44,30 @@ use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::rc::Rc;
 use std::sync::Arc;
+use watch::Watch;
 
 /// Evaluates a program. `measure` says where a thing is, for `bounds(…)`.
 pub fn eval(program: &Program, limits: Limits, measure: Measure) -> (Things, Vec<Diagnostic>) {
-    let mut evaluator = Evaluator::new(program, limits, measure);
+    let (things, diagnostics, _) = run(Evaluator::new(program, limits, measure));
+    (things, diagnostics)
+}
+
+/// The same, with what expressions come to. It is cut short where `stop` says so.
+pub fn watch(
+    program: &Program,
+    limits: Limits,
+    measure: Measure,
+    stop: &dyn Fn() -> bool,
+) -> (Things, Vec<Diagnostic>, Values) {
+    let watch = Some(Watch::new(stop));
+    run(Evaluator { watch, ..Evaluator::new(program, limits, measure) })
+}
+
+fn run(mut evaluator: Evaluator) -> (Things, Vec<Diagnostic>, Values) {
     evaluator.main();
-    let Evaluator { diagnostics, incomplete, mut buffers, .. } = evaluator;
+    let Evaluator { diagnostics, incomplete, mut buffers, watch, .. } = evaluator;
     let built = buffers.pop().unwrap_or_default();
-    (Things::new(built, incomplete), diagnostics)
+    (Things::new(built, incomplete), diagnostics, watch.map(|watch| watch.values).unwrap_or_default())
 }
 
 /// What is known while evaluating.
@@ -96,6 +114,8 @@ struct Evaluator<'p> {
     halted: bool,
     /// Whether a statement came to nothing.
     incomplete: bool,
+    /// Who looks on.
+    watch: Option<Watch<'p>>,
 }
 
 impl<'p> Evaluator<'p> {
@@ -124,6 +144,7 @@ impl<'p> Evaluator<'p> {
             steps: 0,
             halted: false,
             incomplete: false,
+            watch: None,
         }
     }
 

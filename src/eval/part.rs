@@ -85,6 +85,7 @@ impl<'p> Evaluator<'p> {
             match *place {
                 FieldPlace::Param(index) => {
                     let value = self.expr(expr);
+                    self.see(expr, &value);
                     if let Some(param) = params.get_mut(index) {
                         *param = Some(Given { value, span: expr.span });
                     }

@@ -51,9 +51,10 @@ impl Evaluator<'_> {
             StatementKind::Nothing => {}
             StatementKind::Invalid => self.incomplete = true,
             StatementKind::Define { slot, value } => {
-                let value = self.expr(value);
-                self.incomplete |= value == Value::Invalid;
-                self.frame.set(*slot, value);
+                let found = self.expr(value);
+                self.see(value, &found);
+                self.incomplete |= found == Value::Invalid;
+                self.frame.set(*slot, found);
             }
             StatementKind::Param(index) => self.param(*index),
             StatementKind::Draw { slot, make } => {
@@ -145,6 +146,12 @@ impl Evaluator<'_> {
             self.frame.set(slot, item);
             self.block(body, false);
             index += 1;
+            if index == 1 {
+                self.repeats(true);
+            }
+        }
+        if index > 0 {
+            self.repeats(false);
         }
         self.uses.pop();
         self.link = outer;
@@ -205,6 +212,7 @@ impl Evaluator<'_> {
             _ => value,
         };
         self.incomplete |= value == Value::Invalid;
+        self.see_at(param.span, &value);
         self.frame.set(param.slot, value);
     }
 }

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod layout;
+mod lsp;
 mod pictures;
 mod tools;
 mod watch;

@@ -6,6 +6,7 @@
 mod compare;
 mod editors;
 mod export;
+mod lsp;
 mod preview;
 mod processors;
 mod readme;
@@ -60,6 +61,10 @@ cargo xtask grammar
 
   makes the parser of editors/tree-sitter-rt from its grammar.js (node)
 
+cargo xtask lsp
+
+  types into a document of 2 000 lines, on an idle machine, and prints how soon the language server answers
+
 cargo xtask e2e [STEP…]
 
   terminal   progress on a pseudo-terminal, and Ctrl-C within 100 ms
@@ -96,6 +101,7 @@ fn main() -> ExitCode {
         Some((task, [])) if task == "gallery" => gallery(),
         Some((task, [])) if task == "grammar" => editors::grammar(),
         Some((task, arguments)) if task == "compare" => compare::compare(arguments),
+        Some((task, arguments)) if task == "lsp" => lsp::latency(arguments),
         Some((task, arguments)) if task == "latency" => preview::latency(arguments),
         _ => Err(USAGE.into()),
     };

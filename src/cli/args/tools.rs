@@ -273,3 +273,31 @@ pub struct Man {
     #[arg(long, value_name = "DIR")]
     pub dir: Option<PathBuf>,
 }
+
+pub const LSP_EXAMPLES: &str = "\
+Editors start it by themselves once they are told of it; docs/editors.md says how. In Neovim 0.11:
+
+  vim.filetype.add({ extension = { rt = 'rt' } })
+  vim.lsp.config.rtc = { cmd = { 'rtc', 'lsp' }, filetypes = { 'rt' }, root_markers = { '.git' } }
+  vim.lsp.enable('rtc')
+
+Commands of the server:
+  rtc.startPreview  shows the picture of what stands in the editor, saved or not, in a browser
+  rtc.render        makes the picture beside the scene
+
+Exit codes:
+  0    the editor ended it
+  1    the editor went away
+  2    the command line is wrong";
+
+/// Flags of `rtc lsp`.
+#[derive(Args)]
+pub struct Lsp {
+    /// Lets scenes read files below this folder. By default each below its own, as on the command line.
+    #[arg(long, value_name = "DIR")]
+    pub root: Option<PathBuf>,
+
+    /// Speaks over standard input and output, as it always does: some editors say so.
+    #[arg(long, hide_short_help = true)]
+    pub stdio: bool,
+}

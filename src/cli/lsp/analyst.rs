@@ -1,0 +1,144 @@
+//! What documents mean, found out once for each of their states.
+
+use super::document::{Encoding, Place, Text};
+use super::documents::{Document, Key};
+use super::view::View;
+use super::world::{Names, World};
+use gen_lsp_types::{Location, Position, Range, Uri};
+use rt_lang::analyse;
+use rt_lang::files::FilePath;
+use rt_lang::ide::{self, Analysis, Stop};
+use rt_lang::span::{SourceId, Span};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, OnceLock};
+
+/// What a document meant at some moment.
+#[derive(Debug)]
+pub struct Meaning {
+    /// What it is all about.
+    pub analysis: Analysis,
+    /// The files that were asked for.
+    pub reads: BTreeSet<Key>,
+    names: Names,
+    /// The texts with their lines, as far as they were wanted.
+    texts: Vec<OnceLock<Text>>,
+    encoding: Encoding,
+}
+
+impl Meaning {
+    /// Finds out what a document means, or a file that is not open. None where it is not wanted any more or cannot be read.
+    pub fn find(view: &View, key: &Key, stop: Stop) -> Option<Meaning> {
+        let world = World::around(view, key);
+        let source = world.source().ok()?;
+        let analysis = analyse(&world, source, &view.session.options(), stop)?;
+        let texts: Vec<OnceLock<Text>> = (0..analysis.sources.len()).map(|_| OnceLock::new()).collect();
+        if let (Some(document), Some(text)) = (view.documents.get(key), texts.get(analysis.main.0 as usize)) {
+            // Its lines are known already.
+            let _ = text.set(document.text.clone());
+        }
+        let (names, reads) = (world.names().clone(), world.asked());
+        Some(Meaning { analysis, reads, names, texts, encoding: view.session.encoding })
+    }
+
+    /// The text of a source, with its lines.
+    pub fn text(&self, id: SourceId) -> &Text {
+        self.texts[id.0 as usize].get_or_init(|| Text::new(self.analysis.sources.get(id).text.clone()))
+    }
+
+    /// The byte of the document at a position.
+    pub fn byte(&self, position: Position) -> usize {
+        self.text(self.analysis.main).byte(super::documents::place(position), self.encoding)
+    }
+
+    /// The bytes of the document in a range.
+    pub fn bytes(&self, range: Range) -> std::ops::Range<usize> {
+        let (start, end) = (self.byte(range.start), self.byte(range.end));
+        start..end.max(start)
+    }
+
+    /// The position of a byte of the document.
+    pub fn position(&self, byte: usize) -> Position {
+        position(self.text(self.analysis.main), byte, self.encoding)
+    }
+
+    /// The range of a span of any of the texts.
+    pub fn range(&self, span: Span) -> Range {
+        range(self.text(span.source), span.range(), self.encoding)
+    }
+
+    /// The range of bytes of the document.
+    pub fn own_range(&self, bytes: std::ops::Range<usize>) -> Range {
+        range(self.text(self.analysis.main), bytes, self.encoding)
+    }
+
+    /// The file of a source.
+    pub fn key(&self, id: SourceId) -> Key {
+        self.names.key(&self.analysis.sources.get(id).path)
+    }
+
+    /// The file of a path.
+    pub fn key_at(&self, path: &FilePath) -> Key {
+        self.names.key(path)
+    }
+
+    /// Where a span is, for the client.
+    pub fn location(&self, span: Span, view: &View) -> Location {
+        Location { uri: uri(view, &self.key(span.source)), range: self.range(span) }
+    }
+
+    /// Where bytes of a file of this analysis are; none where it is not made of that file.
+    pub fn place(&self, place: &ide::Location) -> Option<(Key, Range)> {
+        let (id, _) = self.analysis.source_at(&place.path)?;
+        Some((self.key(id), range(self.text(id), place.range.clone(), self.encoding)))
+    }
+}
+
+/// The position of a byte.
+pub fn position(text: &Text, byte: usize, encoding: Encoding) -> Position {
+    let Place { line, character } = text.place(byte, encoding);
+    Position { line, character }
+}
+
+/// The range of some bytes.
+pub fn range(text: &Text, bytes: std::ops::Range<usize>, encoding: Encoding) -> Range {
+    Range { start: position(text, bytes.start, encoding), end: position(text, bytes.end, encoding) }
+}
+
+/// The address of a file: as the client writes it, where it has it open.
+pub fn uri(view: &View, key: &Key) -> Uri {
+    view.documents.get(key).map_or_else(|| key.uri(), |document| document.uri.clone())
+}
+
+/// Keeps what the open documents mean.
+#[derive(Debug, Default)]
+pub struct Analyst {
+    known: BTreeMap<Key, (u64, Arc<Meaning>)>,
+}
+
+impl Analyst {
+    /// What an open document means in the state in which it is seen. None where `stop` said so. `told` hears of what was not
+    /// known before.
+    pub fn meaning(
+        &mut self,
+        view: &View,
+        key: &Key,
+        document: &Document,
+        stop: Stop,
+        told: impl FnOnce(&Arc<Meaning>),
+    ) -> Option<Arc<Meaning>> {
+        if let Some((stamp, meaning)) = self.known.get(key)
+            && *stamp == document.stamp
+        {
+            return Some(meaning.clone());
+        }
+        let meaning = Arc::new(Meaning::find(view, key, stop)?);
+        self.known.insert(key.clone(), (document.stamp, meaning.clone()));
+        told(&meaning);
+        Some(meaning)
+    }
+
+    /// Forgets what is closed.
+    pub fn keep(&mut self, view: &View) {
+        self.known.retain(|key, _| view.documents.get(key).is_some());
+    }
+}

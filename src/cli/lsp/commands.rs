@@ -1,0 +1,83 @@
+//! What a person can have done with a document, while the server goes on.
+
+use super::documents::Key;
+use super::render;
+use super::requests::read;
+use super::view::View;
+use super::work::{Answer, Failure, Told, guarded};
+use crate::cli::interrupt::Interrupt;
+use crossbeam_channel::Sender;
+use gen_lsp_types::{ExecuteCommandParams, Uri};
+use lsp_server::{ErrorCode, RequestId};
+use serde::Deserialize;
+use serde_json::Value;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::thread::Builder;
+
+/// Makes the picture.
+pub const RENDER: &str = "rtc.render";
+/// Shows the picture while the document is edited.
+pub const PREVIEW: &str = "rtc.startPreview";
+/// All of them.
+pub const ALL: [&str; 2] = [PREVIEW, RENDER];
+
+/// The bytes of stack that making a picture may take.
+const STACK: usize = 64 << 20;
+
+/// What a command is about.
+#[derive(Clone, Debug, Deserialize)]
+pub struct About {
+    /// The document.
+    pub uri: Uri,
+    /// With which of its cameras.
+    #[serde(default)]
+    pub camera: Option<String>,
+}
+
+/// A command that is being done.
+pub struct Order {
+    /// Of the request.
+    pub id: RequestId,
+    /// What it is about.
+    pub about: About,
+    /// The document.
+    pub key: Key,
+    /// What was known when it came.
+    pub view: Arc<View>,
+    /// Whether nobody wants it any more.
+    pub cancelled: Arc<AtomicBool>,
+    /// Who hears of it.
+    pub told: Sender<Told>,
+    /// Who tidies up where the process ends.
+    pub interrupt: Interrupt,
+}
+
+/// Reads what is to be done: the command, and what it is about. A bare address does as well.
+pub fn wanted(params: Value) -> Answer<(String, About)> {
+    let ExecuteCommandParams { command, arguments, .. } = read(params)?;
+    if !ALL.contains(&command.as_str()) {
+        let message = format!("there is no command `{command}`");
+        return Err(Failure::new(ErrorCode::InvalidParams, message));
+    }
+    let about = match arguments.unwrap_or_default().into_iter().next() {
+        Some(Value::String(uri)) => About { uri: uri.into(), camera: None },
+        Some(about) => read(about)?,
+        None => {
+            let message = format!("`{command}` wants the address of a document");
+            return Err(Failure::new(ErrorCode::InvalidParams, message));
+        }
+    };
+    Ok((command, about))
+}
+
+/// Starts to make a picture, and tells when it is done.
+pub fn render(order: Order) -> Answer<()> {
+    let work = move || {
+        let answer = guarded(|| render::render(&order)).and_then(|answer| answer);
+        // Nobody listens at the end.
+        let _ = order.told.send(Told::Answered(order.id, answer));
+    };
+    let started = Builder::new().name("render".into()).stack_size(STACK).spawn(work);
+    started.map(drop).map_err(|error| Failure::plain(format!("cannot start a thread: {error}")))
+}

@@ -1,0 +1,143 @@
+//! What is said of documents, to the client.
+
+use super::analyst::{Meaning, uri};
+use super::documents::Key;
+use super::view::View;
+use gen_lsp_types as lsp;
+use rt_lang::diagnostic::{Code, Diagnostic, Severity};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The most that is told of one file: nobody reads more, and there may be as many as characters.
+const MOST: usize = 1_000;
+
+/// What is said of each file of an analysis; of the document itself also where it is nothing.
+pub type Found = BTreeMap<Key, Vec<lsp::Diagnostic>>;
+
+/// What an analysis says of each file.
+pub fn found(meaning: &Meaning, key: &Key, view: &View) -> Found {
+    let mut found = Found::from([(key.clone(), vec![])]);
+    let mut more: BTreeMap<Key, usize> = BTreeMap::new();
+    for diagnostic in &meaning.analysis.diagnostics {
+        let file = meaning.key(diagnostic.primary.span.source);
+        let said: &mut Vec<_> = found.entry(file.clone()).or_default();
+        if said.len() < MOST {
+            said.push(convert(diagnostic, meaning, view));
+        } else {
+            *more.entry(file).or_default() += 1;
+        }
+    }
+    for (file, count) in more {
+        found.entry(file).or_default().push(further(count));
+    }
+    found
+}
+
+/// Says that there is more.
+fn further(count: usize) -> lsp::Diagnostic {
+    lsp::Diagnostic {
+        severity: Some(lsp::DiagnosticSeverity::Information),
+        source: Some("rtc".into()),
+        message: lsp::Message::String(format!("{count} more are not shown: `rtc check` has all")),
+        ..lsp::Diagnostic::default()
+    }
+}
+
+/// One, as the client has it.
+pub fn convert(diagnostic: &Diagnostic, meaning: &Meaning, view: &View) -> lsp::Diagnostic {
+    let Diagnostic { code, primary, labels, uses, .. } = diagnostic;
+    let related = |span, message: String| lsp::DiagnosticRelatedInformation {
+        location: meaning.location(span, view),
+        message,
+    };
+    let labels = labels.iter().map(|label| related(label.span, label.text.clone()));
+    let uses = uses.iter().map(|used| {
+        let head = meaning.analysis.sources.head(used.span);
+        let turn = used.turn.as_ref().map_or_else(String::new, |turn| format!(", {turn}"));
+        related(used.span, format!("in `{head}`{turn}"))
+    });
+    lsp::Diagnostic {
+        range: meaning.range(primary.span),
+        severity: Some(match diagnostic.severity() {
+            Severity::Error => lsp::DiagnosticSeverity::Error,
+            Severity::Warning => lsp::DiagnosticSeverity::Warning,
+        }),
+        code: Some(lsp::Code::String(code.as_str().into())),
+        code_description: view.session.pages.address(*code).map(|href| lsp::CodeDescription { href }),
+        source: Some("rtc".into()),
+        message: lsp::Message::String(words(diagnostic)),
+        tags: matches!(code, Code::W0105 | Code::W0106).then(|| vec![lsp::DiagnosticTag::Unnecessary]),
+        related_information: Some(labels.chain(uses).collect::<Vec<_>>()).filter(|all| !all.is_empty()),
+        data: None,
+    }
+}
+
+/// The message, what is said of the place, and the help, each on a line.
+fn words(diagnostic: &Diagnostic) -> String {
+    let mut words = diagnostic.message.clone();
+    if !diagnostic.primary.text.is_empty() {
+        words.push_str(&format!(": {}", diagnostic.primary.text));
+    }
+    if let Some(help) = &diagnostic.help {
+        words.push_str(&format!("\nhelp: {help}"));
+    }
+    words
+}
+
+/// What was found around each document, and what the client was told of each file.
+#[derive(Debug, Default)]
+pub struct Board {
+    by_document: BTreeMap<Key, Found>,
+    told: BTreeMap<Key, (Option<i32>, Vec<lsp::Diagnostic>)>,
+}
+
+impl Board {
+    /// Takes what was found around a document in place of what was found before, and gives what is to be told.
+    pub fn take(&mut self, document: Key, found: Found, view: &View) -> Vec<lsp::PublishDiagnosticsParams> {
+        let before = self.by_document.get(&document).into_iter().flat_map(BTreeMap::keys);
+        let files: BTreeSet<Key> = before.chain(found.keys()).cloned().collect();
+        self.by_document.insert(document, found);
+        files.into_iter().filter_map(|file| self.news(file, view)).collect()
+    }
+
+    /// Forgets a document that was closed.
+    pub fn close(&mut self, document: &Key, view: &View) -> Vec<lsp::PublishDiagnosticsParams> {
+        let found = self.by_document.remove(document).unwrap_or_default();
+        found.into_keys().filter_map(|file| self.news(file, view)).collect()
+    }
+
+    /// All that is said of a file: by its own analysis first, since what others say of it is mostly the same.
+    fn all(&self, file: &Key) -> Vec<lsp::Diagnostic> {
+        let own = self.by_document.get(file).into_iter();
+        let others = self.by_document.iter().filter(|(key, _)| *key != file).map(|(_, found)| found);
+        let said = own.chain(others).filter_map(|found| found.get(file)).flatten();
+        let mut seen = BTreeSet::new();
+        let place = |range: lsp::Range| {
+            [range.start.line, range.start.character, range.end.line, range.end.character]
+        };
+        let is_new = |diagnostic: &&lsp::Diagnostic| {
+            seen.insert((place(diagnostic.range), format!("{:?}", diagnostic.message)))
+        };
+        said.filter(is_new).cloned().collect()
+    }
+
+    /// What is to be told of a file, if that is not what was told.
+    fn news(&mut self, file: Key, view: &View) -> Option<lsp::PublishDiagnosticsParams> {
+        let all = self.all(&file);
+        let version = view.documents.get(&file).map(|document| document.version);
+        let told = self.told.get(&file);
+        let nothing_new = match told {
+            Some((before, said)) => *before == version && *said == all,
+            None => version.is_none() && all.is_empty(),
+        };
+        if nothing_new {
+            return None;
+        }
+        let uri = uri(view, &file);
+        if version.is_none() && all.is_empty() {
+            self.told.remove(&file);
+        } else {
+            self.told.insert(file, (version, all.clone()));
+        }
+        Some(lsp::PublishDiagnosticsParams { uri, version, diagnostics: all })
+    }
+}

@@ -1,0 +1,147 @@
+//! Messages on a stream of bytes: a head with the length, an empty line, the body.
+//!
+//! Whatever comes in, the next message behind it is found: a body that is too long is passed over, a head without a
+//! length is left behind, and a line that never ends is not kept.
+
+use std::io::{self, BufRead, Read, Write};
+
+/// The longest body, in bytes: a text of 10 MB with room for what JSON makes of it, several times over.
+pub const MOST_BODY: u64 = 64 << 20;
+/// The longest line of a head, in bytes.
+const MOST_LINE: u64 = 4096;
+
+/// What stands next on a stream.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Frame {
+    /// The body of a message.
+    Body(Vec<u8>),
+    /// A message that was passed over, and why.
+    Refused(String),
+}
+
+/// The next message; none where the stream has ended, also within a message.
+///
+/// # Errors
+///
+/// Where the stream cannot be read.
+pub fn read(input: &mut impl BufRead) -> io::Result<Option<Frame>> {
+    let Some(length) = head(input)? else { return Ok(None) };
+    let length = match length {
+        Ok(length) if length <= MOST_BODY => length,
+        Ok(length) => {
+            let passed = io::copy(&mut input.take(length), &mut io::sink())?;
+            let reason = format!("a message has at most {MOST_BODY} bytes, this one has {length}");
+            return Ok((passed == length).then_some(Frame::Refused(reason)));
+        }
+        Err(reason) => return Ok(Some(Frame::Refused(reason))),
+    };
+    let mut body = vec![];
+    input.take(length).read_to_end(&mut body)?;
+    Ok((body.len() as u64 == length).then_some(Frame::Body(body)))
+}
+
+/// The length that a head gives, or why it gives none.
+fn head(input: &mut impl BufRead) -> io::Result<Option<Result<u64, String>>> {
+    let mut length = Err("a message begins with its `Content-Length`".to_string());
+    let mut begun = false;
+    loop {
+        let Some(line) = line(input)? else { return Ok(None) };
+        let line = line.trim_ascii();
+        if line.is_empty() {
+            if begun {
+                return Ok(Some(length));
+            }
+            // Line ends between messages do no harm.
+            continue;
+        }
+        begun = true;
+        let text = String::from_utf8_lossy(line);
+        let Some((name, value)) = text.split_once(':') else { continue };
+        if name.trim().eq_ignore_ascii_case("Content-Length") {
+            length = value.trim().parse().map_err(|_| format!("`{}` is no length", value.trim()));
+        }
+    }
+}
+
+/// The next line as far as it is kept; none at the end of the stream.
+fn line(input: &mut impl BufRead) -> io::Result<Option<Vec<u8>>> {
+    let mut line = vec![];
+    input.take(MOST_LINE).read_until(b'\n', &mut line)?;
+    if line.last() == Some(&b'\n') {
+        return Ok(Some(line));
+    }
+    if (line.len() as u64) < MOST_LINE {
+        return Ok(None);
+    }
+    input.skip_until(b'\n')?;
+    Ok(Some(line))
+}
+
+/// Writes a message.
+///
+/// # Errors
+///
+/// Where the stream cannot be written.
+pub fn write(output: &mut impl Write, body: &[u8]) -> io::Result<()> {
+    write!(output, "Content-Length: {}\r\n\r\n", body.len())?;
+    output.write_all(body)?;
+    output.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(bytes: &[u8]) -> Vec<Frame> {
+        let mut input = bytes;
+        std::iter::from_fn(|| read(&mut input).unwrap()).collect()
+    }
+
+    fn body(text: &str) -> Frame {
+        Frame::Body(text.into())
+    }
+
+    #[test]
+    fn messages_follow_each_other() {
+        let mut bytes = vec![];
+        write(&mut bytes, b"one").unwrap();
+        write(&mut bytes, b"").unwrap();
+        bytes.extend(b"content-length:3\nContent-Type: x\r\n\r\ntwo");
+        assert_eq!(all(&bytes), [body("one"), body(""), body("two")]);
+    }
+
+    #[test]
+    fn behind_a_bad_head_the_next_message_is_found() {
+        for bad in ["Content-Length: -1\r\n\r\n", "Content-Length: 1e3\r\n\r\n", "Hello\r\n\r\n", ": :\n\n"] {
+            let bytes = format!("{bad}Content-Length: 2\r\n\r\nok");
+            let frames = all(bytes.as_bytes());
+            assert!(matches!(frames[0], Frame::Refused(_)), "{bad}");
+            assert_eq!(frames[1], body("ok"), "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_long_line_is_not_kept() {
+        let bytes = [&[b'x'; 1_000_000][..], b"\nContent-Length: 2\r\n\r\nok"].concat();
+        assert_eq!(all(&bytes), [body("ok")]);
+    }
+
+    #[test]
+    fn a_long_body_is_passed_over() {
+        let long = io::repeat(b' ').take(MOST_BODY + 1);
+        let head = format!("Content-Length: {}\r\n\r\n", MOST_BODY + 1);
+        let mut input =
+            io::BufReader::new(head.as_bytes().chain(long).chain(&b"Content-Length: 2\r\n\r\nok"[..]));
+        assert!(matches!(read(&mut input).unwrap(), Some(Frame::Refused(_))));
+        assert_eq!(read(&mut input).unwrap(), Some(body("ok")));
+    }
+
+    #[test]
+    fn a_stream_may_end_anywhere() {
+        let bytes = b"Content-Length: 2\r\n\r\nok";
+        for end in 0..bytes.len() {
+            assert_eq!(all(&bytes[..end]), [], "{end}");
+        }
+        assert_eq!(all(b"Content-Length: 18446744073709551615\r\n\r\n{}"), []);
+    }
+}

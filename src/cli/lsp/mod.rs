@@ -1,0 +1,60 @@
+//! `rtc lsp`: the language server. What it knows of the language is in the library; here is the protocol.
+//!
+//! ```text
+//! stdin ──▶ frame ──▶ message ──▶ server ──▶ work: analyst, requests ──▶ server ──▶ stdout
+//!                                   │ documents, board
+//! ```
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`frame`], [`message`], [`transport`] | bytes to messages, whatever the bytes are |
+//! | [`server`] | what a message leads to, from `initialize` to `exit` |
+//! | [`client`], [`capabilities`] | what the two sides can do |
+//! | [`document`], [`documents`], [`uri`] | the texts as the client edits them, and their addresses |
+//! | [`view`], [`world`] | what was known when something was asked, and the files around a document |
+//! | [`work`], [`analyst`] | the threads that answer, and what documents mean |
+//! | [`requests`] | one question of the protocol each |
+//! | [`diagnostics`], [`pages`] | what is said of documents, and where it is explained |
+//! | [`edits`] | what is different between two texts |
+//! | [`commands`], [`render`] | what a person can have done |
+
+mod analyst;
+mod capabilities;
+mod client;
+mod commands;
+mod diagnostics;
+mod document;
+mod documents;
+mod edits;
+mod frame;
+mod message;
+mod pages;
+mod render;
+mod requests;
+mod server;
+mod transport;
+mod uri;
+mod view;
+mod work;
+mod world;
+
+use super::args::Lsp;
+use super::interrupt::Interrupt;
+use super::{Exit, Problem, plain};
+use server::Server;
+
+/// Serves until the client says so or is gone.
+pub fn run(arguments: &Lsp, interrupt: &Interrupt) -> Result<Exit, Problem> {
+    let cannot = |error| Problem::new(format!("cannot start a thread: {}", plain(&error)));
+    let root = match &arguments.root {
+        None => None,
+        Some(root) => Some(std::fs::canonicalize(root).map_err(|error| {
+            Problem::new(format!("the root `{}` cannot be used: {}", root.display(), plain(&error)))
+        })?),
+    };
+    let (connection, writer) = transport::start().map_err(cannot)?;
+    let exit = Server::new(connection, root, interrupt.clone()).map_err(cannot)?.run();
+    // What was sent last is written before the process ends.
+    let _ = writer.join();
+    Ok(exit)
+}

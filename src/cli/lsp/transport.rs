@@ -1,0 +1,55 @@
+//! Standard input and output as a connection: what a thread reads, and what another writes.
+//!
+//! Both queues are short. A client that reads nothing is not answered without end, and one that writes faster than it is
+//! answered waits.
+
+use super::frame::{self, Frame};
+use super::message::{self, Refusal};
+use crossbeam_channel::{Receiver, Sender, bounded};
+use lsp_server::{Connection, Message};
+use std::io::{self, BufReader, stdin, stdout};
+use std::thread::{Builder, JoinHandle};
+
+/// Messages that wait in one direction.
+const QUEUE: usize = 256;
+
+/// A connection over standard input and output, and the thread that writes: it ends once the connection is gone and all
+/// that was sent is written.
+///
+/// # Errors
+///
+/// Where the system gives no more threads.
+pub fn start() -> io::Result<(Connection, JoinHandle<()>)> {
+    let (read, receiver) = bounded(QUEUE);
+    let (sender, written) = bounded(QUEUE);
+    Builder::new().name("read".into()).spawn(move || read_all(&read))?;
+    let writer = Builder::new().name("write".into()).spawn(move || write_all(&written))?;
+    Ok((Connection { sender, receiver }, writer))
+}
+
+/// Until the input ends or nobody listens.
+fn read_all(sender: &Sender<Message>) {
+    let mut input = BufReader::new(stdin());
+    while let Ok(Some(frame)) = frame::read(&mut input) {
+        let read = match frame {
+            Frame::Body(body) => message::read(&body),
+            Frame::Refused(reason) => Err(Refusal::unreadable(reason)),
+        };
+        let goes_on = match read {
+            Ok(message) => sender.send(message).is_ok(),
+            Err(refusal) => frame::write(&mut stdout().lock(), &refusal.body()).is_ok(),
+        };
+        if !goes_on {
+            return;
+        }
+    }
+}
+
+/// Until everything is written or nobody reads.
+fn write_all(messages: &Receiver<Message>) {
+    for message in messages {
+        if frame::write(&mut stdout().lock(), &message::body(&message)).is_err() {
+            return;
+        }
+    }
+}

@@ -1,0 +1,313 @@
+//! Where questions wait, and the threads that answer them.
+//!
+//! There are two: one for what a text means, and one for what can be told from the text alone, since who types waits for
+//! a completion and not for an analysis. A question is dropped when it is cancelled, and while it is worked on, whoever
+//! works asks from time to time whether it still matters.
+
+use super::analyst::{Analyst, Meaning};
+use super::diagnostics::{self, Found};
+use super::documents::{Document, Key};
+use super::requests::{Lane, Run};
+use super::view::View;
+use crossbeam_channel::Sender;
+use gen_lsp_types::Uri;
+use lsp_server::{ErrorCode, RequestId};
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::Builder;
+
+/// The stack of a thread that works: expressions go deep.
+const STACK: usize = 64 << 20;
+
+/// Why a question has no answer.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Failure {
+    /// As the protocol counts.
+    pub code: i32,
+    /// In a sentence.
+    pub message: String,
+}
+
+impl Failure {
+    /// With a code of the protocol.
+    pub fn new(code: ErrorCode, message: impl Into<String>) -> Failure {
+        Failure { code: code as i32, message: message.into() }
+    }
+
+    /// What was asked cannot be done, for a reason that a person understands.
+    pub fn plain(message: impl Into<String>) -> Failure {
+        Failure::new(ErrorCode::RequestFailed, message)
+    }
+
+    /// Nobody waits for it any more.
+    pub fn cancelled() -> Failure {
+        Failure::new(ErrorCode::RequestCanceled, "cancelled")
+    }
+}
+
+/// An answer, or why there is none.
+pub type Answer<T> = Result<T, Failure>;
+
+/// A question that waits.
+pub struct Question {
+    /// Of the request.
+    pub id: RequestId,
+    /// What answers it.
+    pub run: Run,
+    /// What was asked.
+    pub params: Value,
+    /// What was known then.
+    pub view: Arc<View>,
+    /// Whether the client has lost interest.
+    pub cancelled: Arc<AtomicBool>,
+}
+
+/// What a thread has to say.
+pub enum Told {
+    /// A question is answered.
+    Answered(RequestId, Answer<Value>),
+    /// Something for the client, by method and parameters.
+    Notifies(String, Value),
+    /// A question for the client, whose answer makes no difference.
+    Asks(String, Value),
+    /// A document was looked at.
+    Looked {
+        /// Which.
+        key: Key,
+        /// What was known then.
+        view: Arc<View>,
+        /// The files it is made of.
+        reads: BTreeSet<Key>,
+        /// What is said of them.
+        found: Found,
+    },
+}
+
+/// Where questions wait.
+#[derive(Default)]
+pub struct Desk {
+    waiting: Mutex<Waiting>,
+    news: Condvar,
+}
+
+#[derive(Default)]
+struct Waiting {
+    text: VecDeque<Question>,
+    meaning: VecDeque<Question>,
+    /// Documents to look at, with what was known when they changed last.
+    changed: BTreeMap<Key, Arc<View>>,
+    /// The one among them that was changed by hand.
+    first: Option<Key>,
+}
+
+/// Something to do.
+enum Job {
+    Question(Question),
+    Look(Key, Arc<View>),
+}
+
+impl Desk {
+    /// Starts the two threads, which tell what they have found.
+    ///
+    /// # Errors
+    ///
+    /// Where the system gives no more threads.
+    pub fn start(told: &Sender<Told>) -> io::Result<Arc<Desk>> {
+        let desk = Arc::new(Desk::default());
+        for lane in [Lane::Text, Lane::Meaning] {
+            let worker = Worker { desk: desk.clone(), told: told.clone(), analyst: Analyst::default() };
+            Builder::new().name(format!("{lane:?}")).stack_size(STACK).spawn(move || worker.run(lane))?;
+        }
+        Ok(desk)
+    }
+
+    /// Puts a question.
+    pub fn ask(&self, lane: Lane, question: Question) {
+        let mut waiting = self.lock();
+        match lane {
+            Lane::Text => waiting.text.push_back(question),
+            Lane::Meaning => waiting.meaning.push_back(question),
+        }
+        self.news.notify_all();
+    }
+
+    /// Asks for a look at documents that may mean something else now, at the first one before the others.
+    pub fn look(&self, keys: impl IntoIterator<Item = Key>, view: &Arc<View>) {
+        let mut waiting = self.lock();
+        let mut keys = keys.into_iter().peekable();
+        waiting.first = keys.peek().cloned();
+        waiting.changed.extend(keys.map(|key| (key, view.clone())));
+        self.news.notify_all();
+    }
+
+    /// Forgets a question that still waits.
+    pub fn drop_question(&self, id: &RequestId) {
+        let mut waiting = self.lock();
+        waiting.text.retain(|question| question.id != *id);
+        waiting.meaning.retain(|question| question.id != *id);
+    }
+
+    /// Waits for something to do.
+    fn next(&self, lane: Lane) -> Job {
+        let mut waiting = self.lock();
+        loop {
+            let found = match lane {
+                Lane::Text => waiting.text.pop_front().map(Job::Question),
+                Lane::Meaning => waiting.next_of_meaning(),
+            };
+            match found {
+                Some(job) => return job,
+                None => waiting = self.news.wait(waiting).unwrap_or_else(PoisonError::into_inner),
+            }
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Waiting> {
+        // Every change of it is one step.
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Waiting {
+    /// Questions first: what they find out about a document is told as well.
+    fn next_of_meaning(&mut self) -> Option<Job> {
+        if let Some(question) = self.meaning.pop_front() {
+            return Some(Job::Question(question));
+        }
+        let first = self.first.take().and_then(|key| self.changed.remove_entry(&key));
+        first.or_else(|| self.changed.pop_first()).map(|(key, view)| Job::Look(key, view))
+    }
+}
+
+/// A thread that answers.
+struct Worker {
+    desk: Arc<Desk>,
+    told: Sender<Told>,
+    analyst: Analyst,
+}
+
+impl Worker {
+    /// Until nobody listens.
+    fn run(mut self, lane: Lane) {
+        loop {
+            let job = self.desk.next(lane);
+            let id = match &job {
+                Job::Question(question) => Some(question.id.clone()),
+                Job::Look(..) => None,
+            };
+            let answer = guarded(|| self.work(job)).unwrap_or_else(|failure| {
+                // What was being found out may be half known.
+                self.analyst = Analyst::default();
+                Some(Err(failure))
+            });
+            if let Some((id, answer)) = id.zip(answer)
+                && self.told.send(Told::Answered(id, answer)).is_err()
+            {
+                return;
+            }
+        }
+    }
+
+    fn work(&mut self, job: Job) -> Option<Answer<Value>> {
+        match job {
+            Job::Question(Question { run, params, view, cancelled, .. }) => {
+                self.analyst.keep(&view);
+                let mut asked = Asked { view: &view, cancelled: &cancelled, worker: self };
+                Some(run(&mut asked, params))
+            }
+            Job::Look(key, view) => {
+                self.analyst.keep(&view);
+                let cancelled = AtomicBool::new(false);
+                let mut asked = Asked { view: &view, cancelled: &cancelled, worker: self };
+                // What is out of date is looked at again soon.
+                let _ = asked.meaning_of(&key);
+                None
+            }
+        }
+    }
+}
+
+/// Does something that may panic, which is a bug: it is answered, and the server lives.
+pub fn guarded<T>(work: impl FnOnce() -> T) -> Answer<T> {
+    catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
+        let said = panic.downcast_ref::<&str>().map(ToString::to_string);
+        let said = said.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
+        Failure::new(ErrorCode::InternalError, format!("this is a bug in rtc: {said}"))
+    })
+}
+
+/// What whoever answers a question knows.
+pub struct Asked<'a> {
+    /// What was known when it came.
+    pub view: &'a Arc<View>,
+    cancelled: &'a AtomicBool,
+    worker: &'a mut Worker,
+}
+
+impl Asked<'_> {
+    /// An open document.
+    pub fn document(&self, uri: &Uri) -> Answer<Arc<Document>> {
+        let document = self.view.documents.get(&Key::of(uri));
+        document.cloned().ok_or_else(|| not_open(uri))
+    }
+
+    /// What an open document means.
+    pub fn meaning(&mut self, uri: &Uri) -> Answer<Arc<Meaning>> {
+        self.meaning_of(&Key::of(uri)).unwrap_or_else(|| Err(not_open(uri)))
+    }
+
+    /// Whether the answer is no longer wanted, where it is about no document.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// Whether the answer about a document is no longer wanted, and why.
+    pub fn spoilt(&self, document: &Document) -> Option<Failure> {
+        if self.is_cancelled() {
+            return Some(Failure::cancelled());
+        }
+        let changed = || Failure::new(ErrorCode::ContentModified, "the document has changed");
+        document.is_stale().then(changed)
+    }
+
+    /// What a document means that is open, and tells what is new; none where it is not open.
+    pub fn meaning_of(&mut self, key: &Key) -> Option<Answer<Arc<Meaning>>> {
+        let (view, cancelled) = (self.view, self.cancelled);
+        let document = view.documents.get(key)?;
+        if let Some(failure) = self.spoilt(document) {
+            return Some(Err(failure));
+        }
+        let stop = || cancelled.load(Ordering::Relaxed) || document.is_stale();
+        let told = &self.worker.told;
+        let tell = |meaning: &Arc<Meaning>| {
+            let (key, view, reads) = (key.clone(), view.clone(), meaning.reads.clone());
+            let found = diagnostics::found(meaning, &key, &view);
+            // Nobody listens at the end.
+            let _ = told.send(Told::Looked { key, view, reads, found });
+        };
+        let meaning = self.worker.analyst.meaning(view, key, document, &stop, tell);
+        let failure = || Failure::new(ErrorCode::ContentModified, "the document has changed");
+        Some(meaning.ok_or_else(|| self.spoilt(document).unwrap_or_else(failure)))
+    }
+}
+
+fn not_open(uri: &Uri) -> Failure {
+    Failure::new(ErrorCode::InvalidParams, format!("`{uri}` is not open"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_an_answer() {
+        let failed = guarded(|| -> u32 { panic!("at {}", 7) }).unwrap_err();
+        assert_eq!(failed.code, ErrorCode::InternalError as i32);
+        assert!(failed.message.ends_with("at 7"), "{}", failed.message);
+        assert_eq!(guarded(|| 4), Ok(4));
+    }
+}

@@ -1,0 +1,264 @@
+//! Values, and what stands inside them.
+
+use super::entries::doc_of;
+use super::{List, Rank, detail_of, kind_of};
+use crate::check::{Declared, Function, Kind, Making, Type, texture_parameters};
+use crate::color;
+use crate::ide::hover::function_doc;
+use crate::ide::typing::Typing;
+use crate::ide::walk::Declared as Place;
+use crate::ide::{CompletionKind, Insert, say};
+use crate::schema::{Category, FieldType, KINDS, PLACED};
+use crate::span::Span;
+use crate::syntax::ast::StatementKind;
+
+impl List<'_> {
+    /// What can be the value of a field, or of anything.
+    pub(super) fn value(&mut self, typing: &Typing, field: Option<&str>) {
+        let kind = typing.body().map(|body| body.kind);
+        let wanted = match (field, kind) {
+            (Some("material"), None) => Some(Declared::Field(FieldType::Made(Category::Material))),
+            (Some(field), Some(kind)) => typing.wanted(kind, field),
+            _ => None,
+        };
+        let ty = match &wanted {
+            Some(Declared::Field(ty)) => Some(*ty),
+            _ => None,
+        };
+        ty.into_iter().for_each(|ty| self.of_type(ty));
+        self.names(typing, wanted.as_ref());
+        // What has a type of its own is written out or named.
+        let closed =
+            |ty: FieldType| matches!(ty, FieldType::Choice(_) | FieldType::Named(_) | FieldType::Text);
+        if ty.is_some_and(closed) {
+            return;
+        }
+        self.functions(ty);
+        if !ty.is_some_and(takes_colour) {
+            self.colours(Rank::Seldom);
+        }
+        if ty.is_none() {
+            for kind in KINDS.iter().filter(|kind| kind.category != Category::Block) {
+                self.kind(kind.name, Rank::Rather);
+            }
+            ["true", "false"].iter().for_each(|word| self.word(word));
+        }
+        self.push("if", CompletionKind::Keyword, Rank::Seldom).insert =
+            Insert::with_holes("if ‹true› then ‹1› else ‹0›");
+    }
+
+    /// What a type itself offers.
+    fn of_type(&mut self, ty: FieldType) {
+        match ty {
+            FieldType::Choice(words) => {
+                for word in words {
+                    self.push(word.name, CompletionKind::Word, Rank::Fits).doc = word.doc.into();
+                }
+            }
+            FieldType::OneOf(types) => types.iter().for_each(|ty| self.of_type(*ty)),
+            FieldType::Made(category) => {
+                for kind in KINDS.iter().filter(|kind| kind.category == category) {
+                    self.kind(kind.name, Rank::May);
+                }
+            }
+            FieldType::Part(part) => self.kind(part, Rank::Fits),
+            FieldType::Bool => {
+                for word in ["true", "false"] {
+                    self.push(word, CompletionKind::Keyword, Rank::Fits);
+                }
+            }
+            FieldType::Color | FieldType::Paint => self.colours(Rank::May),
+            _ => {}
+        }
+    }
+
+    fn colours(&mut self, rank: Rank) {
+        for (name, digits) in color::NAMED {
+            self.push(name, CompletionKind::Colour, rank).detail = format!("#{digits}");
+        }
+    }
+
+    /// The names that are in scope: those of the type that is wanted first.
+    fn names(&mut self, typing: &Typing, wanted: Option<&Declared>) {
+        for (name, place, ty) in typing.visible() {
+            let rank = match (wanted, ty) {
+                (_, Type::Part(_)) => continue,
+                (_, Type::File(_)) => Rank::Rather,
+                (Some(wanted), ty) if wanted.accepts(ty) && *ty != Type::Invalid => Rank::Fits,
+                (Some(_), _) => Rank::Rather,
+                (None, _) => Rank::Fits,
+            };
+            let completion = self.push(name, kind_of(ty), rank);
+            completion.detail = detail_of(ty);
+            completion.doc = doc_of(typing, place);
+            if matches!(ty, Type::Function(_)) {
+                completion.insert = Insert::with_holes(&call_of(typing, place, name));
+            }
+        }
+    }
+
+    fn functions(&mut self, wanted: Option<FieldType>) {
+        for &function in Function::ALL {
+            let rank =
+                if wanted.is_some_and(|wanted| gives(function, wanted)) { Rank::May } else { Rank::Rather };
+            let completion = self.push(function.name(), CompletionKind::Function, rank);
+            completion.insert = Insert::with_holes(&built_in_call(function));
+            completion.detail = function.signature().into();
+            completion.doc = function_doc(function);
+        }
+    }
+
+    /// What can be asked of what ends before a point.
+    pub(super) fn members(&mut self, typing: &Typing, dot: usize) {
+        let main = typing.analysis.main;
+        let ends = |span: Span| span.source == main && span.range().end == dot;
+        let types = &typing.analysis.study.notes.types;
+        // The longest expression that ends there is what the point asks.
+        let longest = types.iter().filter(|(span, _)| ends(*span)).min_by_key(|(span, _)| span.start);
+        let ty = match longest {
+            Some((_, ty)) if *ty != Type::Invalid => ty.clone(),
+            _ => self.path_type(typing, dot),
+        };
+        self.members_of(typing, &ty);
+    }
+
+    /// What the names before a point lead to.
+    fn path_type(&self, typing: &Typing, dot: usize) -> Type {
+        let text = &typing.analysis.source().text[..dot];
+        let begins = text
+            .rfind(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.'))
+            .map_or(0, |at| at + text[at..].chars().next().map_or(1, char::len_utf8));
+        let mut names = text[begins..].split('.');
+        let first = names.next().unwrap_or("");
+        let mut ty = typing
+            .visible()
+            .into_iter()
+            .find(|(name, ..)| *name == first)
+            .map_or(Type::Invalid, |(.., ty)| ty.clone());
+        for name in names {
+            ty = inside(typing, &ty)
+                .into_iter()
+                .find(|(known, ..)| *known == name)
+                .map_or(Type::Invalid, |(.., ty)| ty);
+        }
+        ty
+    }
+
+    fn members_of(&mut self, typing: &Typing, ty: &Type) {
+        for (name, place, ty) in inside(typing, ty) {
+            let completion = self.push(&name, kind_of(&ty), Rank::Fits);
+            completion.detail = detail_of(&ty);
+            completion.doc = doc_of(typing, place);
+            if matches!(ty, Type::Function(_)) {
+                completion.insert = Insert::with_holes(&call_of(typing, place, &name));
+            }
+        }
+        match ty {
+            Type::Tuple(count, element) => {
+                for axis in ["x", "y", "z"].iter().take(*count) {
+                    self.push(axis, CompletionKind::Field, Rank::Fits).detail =
+                        say::ty(&Type::Scalar(*element));
+                }
+            }
+            Type::Bounds => {
+                for corner in ["min", "max", "center", "size"] {
+                    self.push(corner, CompletionKind::Field, Rank::Fits).detail = "point".into();
+                }
+            }
+            Type::Row(table) => {
+                for column in &typing.program.tables[table.index()].columns {
+                    self.push(&column.name, CompletionKind::Field, Rank::Fits);
+                }
+            }
+            Type::Made(Making { kind, .. }) | Type::Thing(Making { kind, .. }) => {
+                self.fields_of(typing, *kind)
+            }
+            _ => {}
+        }
+    }
+
+    /// The fields that can be asked of a thing.
+    fn fields_of(&mut self, typing: &Typing, kind: Kind) {
+        let mut field = |name: &str, doc: &str| {
+            self.push(name, CompletionKind::Field, Rank::May).doc = say::paragraph(doc);
+        };
+        match kind {
+            Kind::BuiltIn(id) => id.fields().for_each(|known| field(known.name, known.doc)),
+            Kind::Part(part) => {
+                let params = typing.program.part(part).params.iter();
+                params.for_each(|param| field(&param.name, param.doc.as_deref().unwrap_or("")));
+                PLACED.iter().for_each(|known| field(known.name, known.doc));
+            }
+            Kind::Thing => PLACED.iter().for_each(|known| field(known.name, known.doc)),
+            Kind::Material => {}
+        }
+    }
+}
+
+/// The names that lie inside what has a type: of a file, a part or a group.
+fn inside(typing: &Typing, ty: &Type) -> Vec<(String, Span, Type)> {
+    let program = &typing.program;
+    let of_part = |part| Some(program.part(part).inside);
+    let names = match ty {
+        Type::File(file) => of_part(program.files[file.index()].part),
+        Type::Thing(Making { kind: Kind::Part(part), .. }) => of_part(*part),
+        Type::Thing(making) => making.inside,
+        _ => None,
+    };
+    let Some(names) = names else { return vec![] };
+    let names = &program.insides[names.index()].names;
+    // The things of a file are its own.
+    let shown = |inner: &Type| !matches!((ty, inner), (Type::File(_), Type::Thing(_)));
+    let names = names.iter().filter(|(_, name)| shown(&name.ty));
+    names.map(|(name, known)| (name.to_string(), known.place, known.ty.clone())).collect()
+}
+
+fn takes_colour(ty: FieldType) -> bool {
+    matches!(ty, FieldType::Color | FieldType::Paint)
+}
+
+/// Whether a function may well give what is wanted.
+fn gives(function: Function, wanted: FieldType) -> bool {
+    use Function::*;
+    match wanted {
+        FieldType::Color => matches!(function, Rgb | Srgb | Hsv | Blackbody | Mix),
+        FieldType::Paint => {
+            matches!(function, Rgb | Srgb | Hsv | Blackbody | Mix) || texture_parameters(function).is_some()
+        }
+        FieldType::Transform => matches!(function, Scale | Turn | Move | Matrix),
+        FieldType::OneOf(types) => types.iter().any(|ty| gives(function, *ty)),
+        FieldType::Scalar(_) | FieldType::Int | FieldType::Tuple(..) => {
+            !matches!(function, Rgb | Srgb | Hsv | Blackbody | Scale | Turn | Move | Matrix | Table | Range)
+                && texture_parameters(function).is_none()
+        }
+        _ => false,
+    }
+}
+
+/// A call of a built-in function, with a hole for each of what it takes.
+fn built_in_call(function: Function) -> String {
+    let signature = function.signature();
+    let first = signature.split(" or ").next().unwrap_or(signature);
+    let first = first.split_once("), ").map_or(first, |(first, _)| first).trim_end_matches(')');
+    let (name, taken) = first.split_once('(').unwrap_or((first, ""));
+    if function == Function::Turn {
+        return "turn(‹y›: ‹45deg›)".into();
+    }
+    let holes: Vec<String> =
+        taken.split(", ").filter(|taken| *taken != "…").map(|taken| format!("‹{taken}›")).collect();
+    format!("{name}({})", holes.join(", "))
+}
+
+/// A call of a declared function, with a hole for each of what it takes.
+fn call_of(typing: &Typing, place: Span, name: &str) -> String {
+    let taken = typing.analysis.declared(place, |declared| match declared {
+        Place::Statement(statement) => match &statement.kind {
+            StatementKind::Function { parameters, .. } => {
+                parameters.iter().map(|parameter| format!("‹{}›", parameter.name.text)).collect()
+            }
+            _ => vec![],
+        },
+        Place::Parameter(_) | Place::Variable(_) => vec![],
+    });
+    format!("{name}({})", taken.unwrap_or_default().join(", "))
+}

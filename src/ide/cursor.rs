@@ -1,0 +1,400 @@
+//! Where the cursor stands in a text that is being typed: by its words and marks alone, since the rest may make no sense.
+
+use super::lex::{Lexeme, lex, split};
+use crate::schema::{FieldType, KINDS};
+use std::ops::Range;
+
+/// Where the cursor stands.
+pub(super) struct Cursor<'t> {
+    text: &'t str,
+    /// The word at the cursor, which is being typed; empty where none is.
+    pub(super) word: Range<usize>,
+    /// What may stand there.
+    pub(super) spot: Spot,
+    /// Where the brackets are that are open there, outermost first.
+    pub(super) open: Vec<usize>,
+    /// The words and marks of the entry before the word.
+    pub(super) entry: Vec<Range<usize>>,
+    /// The word or mark before the innermost bracket.
+    pub(super) opened_by: Option<Range<usize>>,
+}
+
+/// What may stand where the cursor is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Spot {
+    /// Nothing that is known: a new name, a comment.
+    Nothing,
+    /// A field or a statement.
+    Entry,
+    /// A value: of this field, where it is that of one.
+    Value(Option<String>),
+    /// A unit behind a number or a parenthesis.
+    Unit(Option<String>),
+    /// A name inside of what ends before this point.
+    Member(usize),
+    /// A type.
+    Type,
+    /// A word behind `@`.
+    Prefix,
+    /// The code of a warning in `@allow(…)`.
+    Warning,
+    /// The path of a file, which begins behind its quote; whether it is one of the language.
+    Path(bool),
+    /// One of these words of the language.
+    Keyword(&'static [&'static str]),
+}
+
+/// A piece of the text with its place.
+type Piece = (Lexeme, Range<usize>);
+
+impl<'t> Cursor<'t> {
+    /// Finds out where a byte of a text lies.
+    pub(super) fn new(text: &'t str, at: usize) -> Cursor<'t> {
+        let at = text.floor_char_boundary(at);
+        let mut before: Vec<Piece> = vec![];
+        let mut here = None;
+        for (lexeme, range) in lex(text, 0) {
+            if range.start > at || range.start == at && !matches!(lexeme, Lexeme::Word | Lexeme::Prefix) {
+                break;
+            }
+            if range.end >= at && !matches!(lexeme, Lexeme::Mark | Lexeme::Line) {
+                here = Some((lexeme, range));
+                break;
+            }
+            before.push((lexeme, range));
+        }
+        before.retain(|(lexeme, _)| *lexeme != Lexeme::Comment);
+        let none =
+            Cursor { text, word: at..at, spot: Spot::Nothing, open: vec![], entry: vec![], opened_by: None };
+        let word = match here {
+            None => at..at,
+            Some((Lexeme::Word | Lexeme::Prefix, range)) => range,
+            Some((Lexeme::Number, range)) => {
+                let middle = range.start + split(&text[range.clone()]).0.len();
+                if at < middle {
+                    return none;
+                }
+                before.push((Lexeme::Number, range.start..middle));
+                middle..range.end
+            }
+            Some((Lexeme::Text, range)) => {
+                let closed = range.len() > 1 && text[range.clone()].ends_with('"');
+                if closed && at == range.end {
+                    return none;
+                }
+                let end = if closed { range.end - 1 } else { at };
+                return none.within(&before, range.start + 1..end);
+            }
+            Some(_) => return none,
+        };
+        let mut cursor = Cursor { word, ..none };
+        cursor.place(&before);
+        cursor.spot = cursor.find(&before);
+        cursor
+    }
+
+    /// A cursor in a text: it may be a path.
+    fn within(self, before: &[Piece], inside: Range<usize>) -> Cursor<'t> {
+        let word = |back: usize| {
+            let index = before.len().checked_sub(back)?;
+            Some(&self.text[before.get(index)?.1.clone()])
+        };
+        let takes_text = |name: &str| {
+            KINDS
+                .iter()
+                .flat_map(|kind| kind.fields)
+                .any(|field| field.name == name && field.ty == FieldType::Text)
+        };
+        let spot = match (word(2), word(1)) {
+            (_, Some("import")) => Spot::Path(true),
+            (Some(field), Some(":")) if takes_text(field) || field == "file" => Spot::Path(false),
+            (Some("image" | "table"), Some("(")) => Spot::Path(false),
+            _ => Spot::Nothing,
+        };
+        Cursor { word: inside, spot, ..self }
+    }
+
+    /// Finds the open brackets, and the entry.
+    fn place(&mut self, before: &[Piece]) {
+        let mut open: Vec<usize> = vec![];
+        for (index, (lexeme, range)) in before.iter().enumerate() {
+            if *lexeme != Lexeme::Mark {
+                continue;
+            }
+            match self.text.as_bytes()[range.start] {
+                b'(' | b'[' | b'{' => open.push(index),
+                closer @ (b')' | b']' | b'}') => {
+                    let matching = open.iter().rposition(|at| {
+                        matches!(
+                            (self.text.as_bytes()[before[*at].1.start], closer),
+                            (b'(', b')') | (b'[', b']') | (b'{', b'}')
+                        )
+                    });
+                    open.truncate(matching.unwrap_or(open.len()));
+                }
+                _ => {}
+            }
+        }
+        self.open = open.iter().map(|index| before[*index].1.start).collect();
+        self.opened_by = open.last().and_then(|index| Some(before.get(index.checked_sub(1)?)?.1.clone()));
+        // An entry lies in a body: brackets of values are part of it.
+        let body = open.iter().rposition(|index| self.is(&before[*index], "{"));
+        let first = body.map_or(0, |body| open[body] + 1);
+        self.entry = self.entry_of(&before[first..]).iter().map(|(_, range)| range.clone()).collect();
+    }
+
+    /// The last entry of those of a body.
+    fn entry_of<'p>(&self, pieces: &'p [Piece]) -> Vec<&'p Piece> {
+        let mut entry: Vec<&Piece> = vec![];
+        let mut depth = 0usize;
+        for piece in pieces {
+            match (piece.0, self.text.as_bytes()[piece.1.start]) {
+                (Lexeme::Mark, b'(' | b'[' | b'{') => depth += 1,
+                (Lexeme::Mark, b')' | b']' | b'}') => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            let goes_on = entry.last().is_some_and(|last| self.goes_on(last));
+            if depth == 0
+                && (self.is(piece, ",") || self.is(piece, ";") || piece.0 == Lexeme::Line && !goes_on)
+            {
+                entry.clear();
+            } else if piece.0 != Lexeme::Line {
+                entry.push(piece);
+            }
+        }
+        entry
+    }
+
+    /// Whether the line goes on behind a piece.
+    fn goes_on(&self, piece: &Piece) -> bool {
+        match piece.0 {
+            Lexeme::Mark => !matches!(self.text.as_bytes()[piece.1.start], b')' | b']' | b'}'),
+            Lexeme::Word => {
+                matches!(&self.text[piece.1.clone()], "and" | "or" | "not" | "to" | "then" | "else" | "in")
+            }
+            Lexeme::Prefix => true,
+            _ => false,
+        }
+    }
+
+    fn is(&self, piece: &Piece, mark: &str) -> bool {
+        &self.text[piece.1.clone()] == mark
+    }
+
+    /// A piece of the entry, counted from its beginning.
+    pub(super) fn piece(&self, index: usize) -> &'t str {
+        self.entry.get(index).map_or("", |range| &self.text[range.clone()])
+    }
+
+    /// What may stand at the word.
+    fn find(&self, before: &[Piece]) -> Spot {
+        if self.text[self.word.clone()].starts_with('@') {
+            return Spot::Prefix;
+        }
+        let last = before.iter().rfind(|(lexeme, _)| *lexeme != Lexeme::Line);
+        let last_text = last.map_or("", |(_, range)| &self.text[range.clone()]);
+        let touches = last.is_some_and(|(_, range)| range.end == self.word.start);
+        let field = (self.piece(1) == ":").then(|| self.piece(0).to_string());
+        if touches && last.is_some_and(|(lexeme, _)| *lexeme == Lexeme::Number) || touches && last_text == ")"
+        {
+            return Spot::Unit(field);
+        }
+        if last_text == "." {
+            return Spot::Member(last.map_or(0, |(_, range)| range.start));
+        }
+        let in_parentheses =
+            self.open.last().is_some_and(|open| matches!(self.text.as_bytes()[*open], b'(' | b'['));
+        if in_parentheses {
+            return self.find_inside(last_text, field);
+        }
+        let operand = last.is_some_and(|(lexeme, _)| {
+            matches!(lexeme, Lexeme::Word | Lexeme::Number | Lexeme::Color | Lexeme::Text)
+        }) || matches!(last_text, ")" | "]" | "}");
+        let begun: Vec<&str> = (0..self.entry.len()).map(|index| self.piece(index)).collect();
+        let begun = self.without_prefixes(&begun);
+        let is_word =
+            |word: &str| matches!(word, "and" | "or" | "not" | "to" | "then" | "else" | "in" | "if");
+        let after_operand = operand && !is_word(last_text);
+        match begun {
+            [] => Spot::Entry,
+            ["param", _, ":"] => Spot::Type,
+            ["param", _, ":", ty @ ..] if ty.contains(&"=") && after_operand => {
+                Spot::Keyword(&["in", "to", "and", "or"])
+            }
+            ["param", _, ":", ty @ ..] if ty.contains(&"=") => Spot::Value(None),
+            ["param", _, ":", "["] => Spot::Type,
+            ["fn", .., "->"] => Spot::Type,
+            ["import"] => Spot::Nothing,
+            ["import", _] => Spot::Keyword(&["as"]),
+            ["for", _] => Spot::Keyword(&["in"]),
+            ["for", _, "in", ..] | ["if" | "assert", ..] if after_operand => {
+                Spot::Keyword(&["and", "or", "to", "then", "else"])
+            }
+            ["for", _, "in", ..] | ["if" | "assert", ..] => Spot::Value(None),
+            ["let" | "material" | "fn", _, ..] if begun.contains(&"=") && !after_operand => {
+                Spot::Value(self.wanted(begun))
+            }
+            [_, ":", ..] if !after_operand => Spot::Value(field),
+            [_, ":", ..] | ["let" | "material" | "fn", ..] if begun.len() > 2 && after_operand => {
+                Spot::Keyword(&["and", "or", "to", "then", "else"])
+            }
+            _ => Spot::Nothing,
+        }
+    }
+
+    /// A value that a definition wants, by the field that wants the same.
+    fn wanted(&self, begun: &[&str]) -> Option<String> {
+        (begun.first() == Some(&"material")).then(|| "material".to_string())
+    }
+
+    /// Without what stands before a statement.
+    fn without_prefixes<'b>(&self, begun: &'b [&'b str]) -> &'b [&'b str] {
+        let mut rest = begun;
+        while let [first, behind @ ..] = rest
+            && first.starts_with('@')
+        {
+            let closer = behind.iter().position(|piece| *piece == ")").map_or(0, |closer| closer + 1);
+            rest = if behind.first() == Some(&"(") { &behind[closer..] } else { behind };
+        }
+        rest
+    }
+
+    /// What may stand between parentheses or in a list.
+    fn find_inside(&self, last: &str, field: Option<String>) -> Spot {
+        let opened_by = self.opened_by.clone().map_or("", |range| &self.text[range]);
+        if opened_by == "@allow" {
+            return if last == "(" { Spot::Warning } else { Spot::Nothing };
+        }
+        if self.piece(0) == "fn" && !(2..self.entry.len()).any(|index| self.piece(index) == "=") {
+            return if last == ":" || last == "[" { Spot::Type } else { Spot::Nothing };
+        }
+        let begins = matches!(
+            last,
+            "(" | "[" | "," | ":" | "+" | "-" | "*" | "/" | "<" | ">" | "==" | "!=" | "<=" | ">=" | "|>"
+        ) || matches!(last, "and" | "or" | "not" | "to" | "then" | "else" | "if" | "in");
+        match begins {
+            // Inside a call another type is wanted than outside.
+            true if is_name(opened_by) => Spot::Value(None),
+            true => Spot::Value(field),
+            false => Spot::Keyword(&["and", "or", "to", "then", "else"]),
+        }
+    }
+
+    /// The text as it would be if something sound stood in place of the word, with the brackets around it closed. All before
+    /// the word stays where it is.
+    pub(super) fn mended(&self) -> String {
+        let (from, filler) = match self.spot {
+            Spot::Value(_) => (self.word.start, "0"),
+            Spot::Type => (self.word.start, "number"),
+            Spot::Member(dot) => (dot, ""),
+            _ => (self.word.start, ""),
+        };
+        let mut text = String::with_capacity(self.text.len() + self.open.len() + 2);
+        text.push_str(&self.text[..from]);
+        text.push_str(filler);
+        match self.resumes() {
+            None => text.push_str(&self.text[self.word.end..]),
+            Some(resumes) => {
+                for open in self.open.iter().rev() {
+                    text.push(match self.text.as_bytes()[*open] {
+                        b'(' => ')',
+                        b'[' => ']',
+                        _ => '}',
+                    });
+                }
+                text.push('\n');
+                text.push_str(&self.text[resumes..]);
+            }
+        }
+        text
+    }
+
+    /// Where the text goes on that does not belong to what is open at the cursor; none where all of that is closed.
+    fn resumes(&self) -> Option<usize> {
+        let column = |at: usize| at - self.text[..at].rfind('\n').map_or(0, |line| line + 1);
+        let mut open = self.open.clone();
+        let mut line_begins = false;
+        for (lexeme, range) in lex(self.text, self.word.end) {
+            if open.is_empty() {
+                return None;
+            }
+            // What begins at the margin is not inside of anything.
+            if line_begins && lexeme == Lexeme::Word && column(range.start) == 0 {
+                return Some(range.start);
+            }
+            line_begins = lexeme == Lexeme::Line;
+            match (lexeme, self.text.as_bytes()[range.start]) {
+                (Lexeme::Mark, b'(' | b'[' | b'{') => open.push(range.start),
+                (Lexeme::Mark, b')' | b']' | b'}') => drop(open.pop()),
+                _ => {}
+            }
+        }
+        (!open.is_empty()).then_some(self.text.len())
+    }
+}
+
+/// Whether this is the name of something that can be called.
+fn is_name(word: &str) -> bool {
+    word.starts_with(|c: char| c.is_alphabetic() || c == '_')
+        && !matches!(word, "and" | "or" | "not" | "to" | "then" | "else" | "if" | "in")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The spot of a text with `|` where the cursor is, and the text as it is mended.
+    fn spot(marked: &str) -> (Spot, String) {
+        let at = marked.find('|').unwrap();
+        let text = marked.replacen('|', "", 1);
+        let cursor = Cursor::new(&text, at);
+        (cursor.spot.clone(), cursor.mended())
+    }
+
+    #[test]
+    fn the_place_tells_what_may_stand_there() {
+        let value = |field: &str| Spot::Value(Some(field.to_string()));
+        for (text, wanted) in [
+            ("|", Spot::Entry),
+            ("sphere { ra|", Spot::Entry),
+            ("sphere { radius: 1m, |", Spot::Entry),
+            ("sphere {\n  radius: 1m\n  |\n}", Spot::Entry),
+            ("sphere { material: |", value("material")),
+            ("sphere { material: di|\nplane { }", value("material")),
+            ("sphere { at: (0, |", value("at")),
+            ("sphere { at: (0, cos(|", Spot::Value(None)),
+            ("sphere { radius: 8|", Spot::Unit(Some("radius".into()))),
+            ("sphere { radius: 8m|", Spot::Unit(Some("radius".into()))),
+            ("sphere { at: (0, 1, 0)c|", Spot::Unit(Some("at".into()))),
+            ("let a = |", Spot::Value(None)),
+            ("let |", Spot::Nothing),
+            ("sphere ba|", Spot::Nothing),
+            ("material a = |", value("material")),
+            ("param a: |", Spot::Type),
+            ("param a: length = |", Spot::Value(None)),
+            ("fn f(a: |", Spot::Type),
+            ("fn f(a: length) -> |", Spot::Type),
+            ("for i |", Spot::Keyword(&["in"])),
+            ("for i in |", Spot::Value(None)),
+            ("import \"|", Spot::Path(true)),
+            ("mesh { file: \"a/|\" }", Spot::Path(false)),
+            ("// |", Spot::Nothing),
+            ("@|", Spot::Prefix),
+            ("@off |", Spot::Entry),
+            ("@allow(|", Spot::Warning),
+            ("camera { look: a.|", Spot::Member(16)),
+        ] {
+            assert_eq!(spot(text).0, wanted, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_open_is_closed_before_what_follows() {
+        assert_eq!(spot("sphere { ra|\nplane { }").1, "sphere { }\nplane { }");
+        assert_eq!(spot("sphere { at: (0, |\nplane { }").1, "sphere { at: (0, 0)}\nplane { }");
+        assert_eq!(
+            spot("part a {\n  sphere { | }\n  let b = 1\n}").1,
+            "part a {\n  sphere {  }\n  let b = 1\n}"
+        );
+    }
+}

@@ -1,0 +1,172 @@
+//! What an editor asks of a scene: plain questions with plain answers, as bytes of texts. It knows no protocol.
+//!
+//! An [`Analysis`] is what one text means together with all it imports, and never changes: an edit makes another one, by
+//! [`crate::analyse`], which runs the stages that [`crate::compile`] runs. Most questions are about the text that was analysed; what they
+//! point at may lie in another file. Questions that are asked while a statement is being typed, [`complete`] and
+//! [`signatures`], take the text itself. [`references`] and [`rename`] look through several analyses, since who
+//! uses a file is not known in it.
+//!
+//! No text, offset or range makes a question panic: what lies outside a text is moved to its end.
+
+mod answers;
+mod colours;
+mod complete;
+mod cursor;
+mod definition;
+mod fixes;
+mod folds;
+mod hints;
+mod hover;
+mod lenses;
+mod lex;
+mod links;
+mod named;
+mod rename;
+mod say;
+mod selection;
+mod signature;
+mod symbols;
+mod tokens;
+mod typing;
+mod walk;
+
+pub use answers::*;
+pub use colours::present;
+pub use complete::complete;
+pub use rename::{references, rename};
+pub use say::{default, range};
+pub use signature::signatures;
+
+use crate::check::Notes;
+use crate::diagnostic::Diagnostic;
+use crate::eval::Values;
+use crate::files::FilePath;
+use crate::import::ImportedFile;
+use crate::scene::Camera;
+use crate::source::{Source, Sources};
+use crate::span::{SourceId, Span};
+use std::ops::Range;
+
+/// Asked between steps whether the answer is still wanted: `true` ends the work.
+pub type Stop<'s> = &'s (dyn Fn() -> bool + Sync);
+
+/// What one text means together with all it imports. It can be shared among threads.
+#[derive(Debug)]
+pub struct Analysis {
+    /// All texts: the one that was analysed, those it imports, and settings.
+    pub sources: Sources,
+    /// The one that was analysed.
+    pub main: SourceId,
+    /// Errors and warnings in all of them, by place.
+    pub diagnostics: Vec<Diagnostic>,
+    /// One line for each default that was chosen for the user.
+    pub notes: Vec<String>,
+    /// The camera that takes the picture, and where its block stands, where somebody wrote it and nothing is wrong.
+    camera: Option<(Camera, Span)>,
+    study: Study,
+}
+
+/// What the stages learn of a text on their way.
+#[derive(Debug, Default)]
+pub struct Study {
+    /// The trees of all files.
+    pub files: Vec<ImportedFile>,
+    /// What names mean.
+    pub notes: Notes,
+    /// What expressions come to.
+    pub values: Values,
+}
+
+impl Analysis {
+    /// Puts together what the stages found out.
+    pub(crate) fn new(
+        sources: Sources,
+        main: SourceId,
+        diagnostics: Vec<Diagnostic>,
+        notes: Vec<String>,
+        camera: Option<(Camera, Span)>,
+        study: Study,
+    ) -> Analysis {
+        Analysis { sources, main, diagnostics, notes, camera, study }
+    }
+
+    /// The text that was analysed.
+    pub fn source(&self) -> &Source {
+        self.sources.get(self.main)
+    }
+
+    /// The text of a file, if the scene is made of it.
+    pub fn source_at(&self, path: &FilePath) -> Option<(SourceId, &Source)> {
+        self.files().find(|(_, source)| source.path == *path)
+    }
+
+    /// The files of the scene that are texts of the language, the one that was analysed among them.
+    pub fn files(&self) -> impl Iterator<Item = (SourceId, &Source)> {
+        self.study.files.iter().map(|file| (file.source, self.sources.get(file.source)))
+    }
+
+    /// What can be said of what stands at a byte: its type, its value, the words above its declaration.
+    pub fn hover(&self, at: usize) -> Option<Hover> {
+        hover::hover(self, at)
+    }
+
+    /// Where what is named at a byte is declared. What is built in is declared nowhere.
+    pub fn definition(&self, at: usize) -> Option<Definition> {
+        definition::definition(self, at)
+    }
+
+    /// The name at a byte, if it can be renamed; else a sentence that says why not. None where no name stands.
+    pub fn renamable(&self, at: usize) -> Option<Result<Span, String>> {
+        rename::renamable(self, at)
+    }
+
+    /// What the text declares, as a tree.
+    pub fn symbols(&self) -> Vec<Symbol> {
+        symbols::symbols(self)
+    }
+
+    /// The bodies and comments of more than one line.
+    pub fn folds(&self) -> Vec<Fold> {
+        folds::folds(self)
+    }
+
+    /// The ranges around a byte that are units of the language, innermost first.
+    pub fn selection(&self, at: usize) -> Vec<Span> {
+        selection::selection(self, at)
+    }
+
+    /// What the words of a part of the text are, in order. None overlaps another, or goes over a line end.
+    pub fn tokens(&self, range: Range<usize>) -> Vec<Token> {
+        tokens::tokens(self, range)
+    }
+
+    /// The colours that are written in the text. [`present`] says how another is written in place of one.
+    pub fn colours(&self) -> Vec<Colour> {
+        colours::colours(self)
+    }
+
+    /// What a part of the text does not say and is known all the same: what expressions come to, what follows from a lens.
+    pub fn hints(&self, range: Range<usize>) -> Vec<Hint> {
+        hints::hints(self, range)
+    }
+
+    /// The edits that lay out a part of the text as the formatter does; none where it has an error.
+    pub fn format(&self, range: Range<usize>) -> Vec<Edit> {
+        folds::format(self, range)
+    }
+
+    /// The files that the text names, each as a path.
+    pub fn links(&self) -> Vec<Link> {
+        links::links(self)
+    }
+
+    /// Where something can be done with the picture: shown, or made.
+    pub fn lenses(&self) -> Vec<Lens> {
+        lenses::lenses(self)
+    }
+
+    /// What can be mended in a part of the text without a thought, and warnings that can be allowed.
+    pub fn fixes(&self, range: Range<usize>) -> Vec<Fix> {
+        fixes::fixes(self, range)
+    }
+}

@@ -1,0 +1,188 @@
+//! Whatever comes in, the server lives and answers what it can.
+
+use super::super::Desk;
+use super::client::Client;
+use serde_json::{Value, json};
+
+const BAD: &str = "sphere { radius: 8deg }\n";
+
+fn code(answer: Result<Value, Value>) -> i64 {
+    answer.unwrap_err()["code"].as_i64().unwrap()
+}
+
+/// The server does its work still.
+#[track_caller]
+fn lives(client: &mut Client) {
+    client.open("alive.rt", BAD);
+    assert_eq!(client.codes("alive.rt", Some(1)), ["E0203"]);
+}
+
+#[test]
+fn a_session_has_a_beginning_and_an_end() {
+    let desk = Desk::new();
+    let mut client = Client::silent(&desk);
+    assert_eq!(code(client.ask("textDocument/hover", json!({}))), -32002);
+    client.tell("textDocument/didOpen", json!({ "textDocument": 3 }));
+    let can = client.ask("initialize", json!({ "capabilities": {} })).unwrap();
+    assert_eq!(can["capabilities"]["positionEncoding"], "utf-16");
+    assert_eq!(code(client.ask("initialize", json!({ "capabilities": {} }))), -32600);
+    assert_eq!(client.ask("shutdown", Value::Null), Ok(Value::Null));
+    assert_eq!(code(client.ask("textDocument/hover", json!({}))), -32600);
+    client.tell("exit", Value::Null);
+    assert_eq!(client.code(), Some(0));
+}
+
+#[test]
+fn an_end_that_was_not_announced_is_a_failure() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    client.tell("exit", Value::Null);
+    assert_eq!(client.code(), Some(1));
+    let mut client = Client::new(&desk);
+    client.send_bytes(b"Content-Length: 100\r\n\r\n{\"jsonrpc\"");
+    client.hang_up();
+    assert_eq!(client.code(), Some(1));
+}
+
+#[test]
+fn malformed_messages_are_answered_and_the_next_one_is_read() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    for (bytes, code) in [
+        (&b"Content-Length: 9\r\n\r\n{\"id\": 1, "[..], -32700),
+        (b"Content-Length: 3\r\n\r\n\xff\xfe\xfd", -32700),
+        (b"Content-Length: many\r\n\r\n", -32700),
+        (b"Hello, world!\r\n\r\n", -32700),
+        (b"Content-Length: 2\r\n\r\n[]", -32600),
+        (b"Content-Length: 4\r\n\r\nnull", -32600),
+    ] {
+        client.send_bytes(bytes);
+        assert_eq!(client.answer(&Value::Null).unwrap_err()["code"], code, "{}", bytes.escape_ascii());
+    }
+    client.send(&json!({ "id": 77 }));
+    assert_eq!(client.answer(&json!(77)).unwrap_err()["code"], -32600);
+    lives(&mut client);
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn what_is_not_known_or_makes_no_sense_is_refused() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    assert_eq!(code(client.ask("textDocument/teleport", json!({}))), -32601);
+    assert_eq!(code(client.ask("textDocument/hover", json!({ "position": "here" }))), -32602);
+    assert_eq!(code(client.at("textDocument/hover", "none.rt", 0, 0)), -32602);
+    assert_eq!(code(client.ask("workspace/executeCommand", json!({ "command": "rtc.fly" }))), -32602);
+    client.tell("$/anything", json!([1]));
+    client.tell("textDocument/didChange", json!({ "textDocument": {} }));
+    client.tell("textDocument/didClose", json!({ "textDocument": { "uri": "file:///none.rt" } }));
+    client.change("none.rt", 2, json!([{ "text": "sphere {" }]));
+    client.send(&json!({ "jsonrpc": "2.0", "id": 4711, "result": null }));
+    client.tell("$/cancelRequest", json!({ "id": "none" }));
+    lives(&mut client);
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn ids_may_come_in_any_order_and_an_id_in_use_is_refused() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    client.open("a.rt", BAD);
+    let params =
+        json!({ "textDocument": { "uri": client.uri("a.rt") }, "position": { "line": 0, "character": 1 } });
+    let ids = [json!(900), json!("b"), json!(-3), json!("900"), json!(2)];
+    for id in &ids {
+        client.send(&json!({ "jsonrpc": "2.0", "id": id, "method": "textDocument/hover", "params": params }));
+    }
+    for id in ids.iter().rev() {
+        client.answer(id).unwrap();
+    }
+    // Ids may be used again once they are answered; of two at a time one is refused, or the first was quicker.
+    for _ in 0..2 {
+        client.send(&json!({ "jsonrpc": "2.0", "id": 5, "method": "textDocument/hover", "params": params }));
+    }
+    let answers = [client.answer(&json!(5)), client.answer(&json!(5))];
+    let refused = answers.iter().filter_map(|answer| answer.as_ref().err()).collect::<Vec<_>>();
+    assert!(refused.iter().all(|error| error["code"] == -32600) && refused.len() < 2, "{answers:?}");
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn a_request_that_is_cancelled_is_answered_once() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    // Something to be busy with.
+    let balls: String = (0..3000).map(|i| format!("sphere {{ at: ({i}, 0, 0)m, radius: 1m }}\n")).collect();
+    client.open("a.rt", &balls);
+    let uri = client.uri("a.rt");
+    let params = json!({ "textDocument": { "uri": uri } });
+    let ids: Vec<i32> =
+        (0..20).map(|_| client.begin("textDocument/documentSymbol", params.clone())).collect();
+    for id in &ids {
+        client.tell("$/cancelRequest", json!({ "id": id }));
+    }
+    let answers: Vec<_> = ids.iter().map(|id| client.answer(&json!(id))).collect();
+    assert!(answers.iter().filter_map(|answer| answer.as_ref().err()).all(|error| error["code"] == -32800));
+    assert!(answers.iter().any(Result::is_err), "none was cancelled in time");
+    lives(&mut client);
+    assert!(client.wait_nothing_for(&ids), "one was answered twice");
+}
+
+#[test]
+fn a_huge_message_is_passed_over() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    let length = 65 << 20;
+    client.send_bytes(format!("Content-Length: {length}\r\n\r\n").as_bytes());
+    let block = vec![b' '; 1 << 20];
+    for _ in 0..65 {
+        client.send_bytes(&block);
+    }
+    assert_eq!(client.answer(&Value::Null).unwrap_err()["code"], -32700);
+    // One that would take gigabytes once it is values.
+    let many = format!("{{\"method\":\"x\",\"params\":[{}0]}}", "0,".repeat(10 << 20));
+    client.send_bytes(format!("Content-Length: {}\r\n\r\n{many}", many.len()).as_bytes());
+    assert_eq!(client.answer(&Value::Null).unwrap_err()["code"], -32700);
+    lives(&mut client);
+    #[cfg(target_os = "linux")]
+    assert!(client.memory() < 400 << 20, "{} MB", client.memory() >> 20);
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn a_long_document_is_edited_within_bounds() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    let line = "sphere { at: (1, 2, 3)m, radius: 10cm, material: diffuse { color: #d94f30 } }\n";
+    let count = (10 << 20) / line.len();
+    client.open("long.rt", &line.repeat(count));
+    for version in 2..12 {
+        let at = json!({ "line": count / 2, "character": 0 });
+        client.change("long.rt", version, json!([{ "range": { "start": at, "end": at }, "text": "x" }]));
+    }
+    let codes = client.codes("long.rt", Some(11));
+    assert!(!codes.is_empty());
+    #[cfg(target_os = "linux")]
+    assert!(client.memory() < 2500 << 20, "{} MB", client.memory() >> 20);
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn a_folder_that_vanishes_is_no_reason_to_end() {
+    let desk = Desk::new();
+    std::fs::create_dir(desk.path("room")).unwrap();
+    desk.put("room/woods.rt", "material oak = diffuse { color: #705848 }\n");
+    let mut client = Client::new(&desk);
+    let scene = "import \"woods.rt\" as woods\nsphere { radius: 1m, material: woods.oak }\n";
+    client.open("room/scene.rt", scene);
+    assert_eq!(client.codes("room/scene.rt", Some(1)), Vec::<String>::new());
+    let uri = client.uri("room/scene.rt");
+    std::fs::remove_dir_all(desk.path("room")).unwrap();
+    let document = json!({ "uri": uri, "version": 2 });
+    let changes = json!([{ "text": format!("{scene}\n") }]);
+    client.tell("textDocument/didChange", json!({ "textDocument": document, "contentChanges": changes }));
+    let said = client.wait("diagnostics", |message| message["params"]["version"] == 2);
+    assert_eq!(said["params"]["diagnostics"][0]["code"], "E0501", "{said}");
+    lives(&mut client);
+    assert_eq!(client.end(), Some(0));
+}

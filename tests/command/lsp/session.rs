@@ -1,0 +1,162 @@
+//! What an editor asks, and what it is told.
+
+use super::super::Desk;
+use super::client::Client;
+use serde_json::{Value, json};
+
+const SCENE: &str = "\
+/// How many balls.
+param count: int = 3 in 1 to 9
+material red = diffuse { color: #d94f30 }
+for i in range(count) {
+  sphere { at: (i, 0, 0)m, radius: 40cm, material: red }
+}
+camera { from: (0, 1, 4)m, look: (0, 0.5, 0)m }
+";
+
+fn document(client: &Client, name: &str) -> Value {
+    json!({ "textDocument": { "uri": client.uri(name) } })
+}
+
+#[test]
+fn diagnostics_appear_while_typing_and_clear_on_a_mend_and_on_closing() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    client.open("a.rt", "sphere { radius: 8deg }\n");
+    let said = client.diagnostics("a.rt", Some(1));
+    assert_eq!((said.len(), &said[0]["code"], &said[0]["severity"]), (1, &json!("E0203"), &json!(1)));
+    assert_eq!(
+        said[0]["range"],
+        json!({ "start": { "line": 0, "character": 17 }, "end": { "line": 0, "character": 21 } })
+    );
+    let page = said[0]["codeDescription"]["href"].as_str().unwrap().strip_prefix("file://").unwrap();
+    assert!(std::fs::read_to_string(page).unwrap().starts_with("# E0203"));
+    let at = json!({ "start": { "line": 0, "character": 18 }, "end": { "line": 0, "character": 21 } });
+    client.change("a.rt", 2, json!([{ "range": at, "text": "mm" }]));
+    assert_eq!(client.codes("a.rt", Some(2)), Vec::<String>::new());
+    client.replace("a.rt", 3, "let a = 1m\nsphere { radius: 1m }\n");
+    let said = client.diagnostics("a.rt", Some(3));
+    assert_eq!(
+        (&said[0]["code"], &said[0]["severity"], &said[0]["tags"]),
+        (&json!("W0106"), &json!(2), &json!([1]))
+    );
+    let document = document(&client, "a.rt");
+    client.tell("textDocument/didClose", document);
+    assert_eq!(client.codes("a.rt", None), Vec::<String>::new());
+    assert_eq!(client.end(), Some(0));
+    assert!(!std::path::Path::new(page).exists(), "it tidies up");
+}
+
+#[test]
+fn imports_are_read_from_open_documents_first() {
+    let desk = Desk::new();
+    desk.put("woods.rt", "material oak = diffuse { color: #705848 }\n");
+    let mut client = Client::new(&desk);
+    client.open("scene.rt", "import \"woods.rt\" as woods\nsphere { radius: 1m, material: woods.oak }\n");
+    assert_eq!(client.codes("scene.rt", Some(1)), Vec::<String>::new());
+    // What is being written is not saved yet, and is what counts.
+    client.open("woods.rt", "material oak = diffuse { color: 8mm }\n");
+    assert_eq!(client.codes("woods.rt", Some(1)), ["E0205"]);
+    client.replace("woods.rt", 2, "material elm = diffuse { color: #705848 }\n");
+    assert_eq!(client.codes("scene.rt", Some(1)), ["E0101"]);
+    client.replace("woods.rt", 3, "material oak = diffuse { color: #705848 }\n");
+    assert_eq!(client.codes("scene.rt", Some(1)), Vec::<String>::new());
+    client.replace("woods.rt", 4, "material elm = diffuse { color: #705848 }\n");
+    assert_eq!(client.codes("scene.rt", Some(1)), ["E0101"]);
+    // Closed without saving, it is what it was.
+    let document = document(&client, "woods.rt");
+    client.tell("textDocument/didClose", document);
+    assert_eq!(client.codes("scene.rt", Some(1)), Vec::<String>::new());
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn what_is_wrong_in_an_imported_file_is_said_there() {
+    let desk = Desk::new();
+    desk.put("woods.rt", "material oak = diffuse { color: 8 }\n");
+    let mut client = Client::new(&desk);
+    client.open("scene.rt", "import \"woods.rt\" as woods\nsphere { radius: 1m, material: woods.oak }\n");
+    assert_eq!(client.codes("woods.rt", None), ["E0205"]);
+    assert_eq!(client.codes("scene.rt", Some(1)), Vec::<String>::new());
+    // Mended by somebody else.
+    desk.put("woods.rt", "material oak = diffuse { color: #705848 }\n");
+    let changes = json!([{ "uri": client.uri("woods.rt"), "type": 2 }]);
+    client.tell("workspace/didChangeWatchedFiles", json!({ "changes": changes }));
+    assert_eq!(client.codes("woods.rt", None), Vec::<String>::new());
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn a_document_that_was_never_saved_is_understood() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    let item = json!({ "uri": "untitled:Untitled-1", "languageId": "rt", "version": 1, "text": "sphere { radius: 8deg }" });
+    client.tell("textDocument/didOpen", json!({ "textDocument": item }));
+    let said = client.wait("diagnostics", |message| message["params"]["uri"] == "untitled:Untitled-1");
+    assert_eq!(said["params"]["diagnostics"][0]["code"], "E0203");
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn a_picture_is_made_of_what_is_not_saved() {
+    let desk = Desk::new();
+    let mut client = Client::with(&desk, json!({ "window": { "workDoneProgress": true } }));
+    client.open("ball.rt", "sphere { radius: 1m }\nrender { size: (24, 18), samples: 1 }\n");
+    let about = json!([{ "uri": client.uri("ball.rt"), "camera": null }]);
+    let made = client.ask("workspace/executeCommand", json!({ "command": "rtc.render", "arguments": about }));
+    assert!(made.unwrap()["path"].as_str().unwrap().ends_with("ball.png"));
+    assert_eq!(super::super::read_png(&desk.get("ball.png")).0, [24, 18]);
+    client.wait("progress", |message| message["params"]["value"]["kind"] == "end");
+    client.replace("ball.rt", 2, "sphere { radius: 8deg }\n");
+    let refused =
+        client.ask("workspace/executeCommand", json!({ "command": "rtc.render", "arguments": about }));
+    assert_eq!(refused.unwrap_err()["message"], "the scene has an error");
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn every_question_has_an_answer() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    client.open("a.rt", SCENE);
+    let whole = json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 7, "character": 0 } });
+    let with = |client: &Client, more: Value| {
+        let mut params = document(client, "a.rt");
+        for (name, value) in more.as_object().unwrap() {
+            params[name] = value.clone();
+        }
+        params
+    };
+    let at = json!({ "line": 1, "character": 7 });
+    let options = json!({ "tabSize": 2, "insertSpaces": true });
+    let colour = json!({ "red": 0.5, "green": 0, "blue": 1, "alpha": 1 });
+    for (method, more) in [
+        ("hover", json!({ "position": at })),
+        ("completion", json!({ "position": at })),
+        ("signatureHelp", json!({ "position": { "line": 3, "character": 15 } })),
+        ("definition", json!({ "position": { "line": 3, "character": 16 } })),
+        ("references", json!({ "position": at, "context": { "includeDeclaration": true } })),
+        ("documentHighlight", json!({ "position": at })),
+        ("prepareRename", json!({ "position": at })),
+        ("documentSymbol", json!({})),
+        ("foldingRange", json!({})),
+        ("selectionRange", json!({ "positions": [at] })),
+        ("semanticTokens/full", json!({})),
+        ("semanticTokens/range", json!({ "range": whole })),
+        ("documentColor", json!({})),
+        ("colorPresentation", json!({ "color": colour, "range": whole })),
+        ("inlayHint", json!({ "range": whole })),
+        ("formatting", json!({ "options": options })),
+        ("rangeFormatting", json!({ "range": whole, "options": options })),
+        ("documentLink", json!({})),
+        ("codeAction", json!({ "range": whole, "context": { "diagnostics": [] } })),
+        ("codeLens", json!({})),
+    ] {
+        let params = with(&client, more);
+        client
+            .ask(&format!("textDocument/{method}"), params)
+            .unwrap_or_else(|error| panic!("{method}: {error}"));
+    }
+    client.ask("workspace/symbol", json!({ "query": "red" })).unwrap();
+    assert_eq!(client.end(), Some(0));
+}
