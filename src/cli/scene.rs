@@ -31,14 +31,25 @@ pub fn load(path: &Path, reading: &Reading, overrides: &Overrides) -> Result<Loa
 
 /// Compiles a scene that was read.
 pub fn take(path: &Path, input: Input, reading: &Reading, overrides: &Overrides) -> Result<Loaded, Problem> {
-    let Input { mut sources, id, refused } = input;
     let (files, place) = disk(path, reading)?;
+    Ok(take_from(files, place, input, reading, overrides))
+}
+
+/// Compiles a scene that was read and has its place among files.
+pub fn take_from(
+    files: Disk,
+    place: FilePath,
+    input: Input,
+    reading: &Reading,
+    overrides: &Overrides,
+) -> Loaded {
+    let Input { mut sources, id, refused } = input;
     sources.place(id, place);
     let compiled = match refused {
         Some(refused) => Compiled::refused(refused),
         None => compile(&files, &mut sources, id, &reading.options(overrides.clone())),
     };
-    Ok(Loaded { sources, id, files, compiled })
+    Loaded { sources, id, files, compiled }
 }
 
 /// What a scene may read, and its own place there.

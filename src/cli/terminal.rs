@@ -16,6 +16,8 @@ pub struct Terminal {
     /// Whether a person may be watching.
     pub interactive: bool,
     style: Style,
+    /// Whether nothing is written.
+    silent: bool,
 }
 
 impl Terminal {
@@ -26,7 +28,13 @@ impl Terminal {
         let color = AutoStream::choice(&stderr()) != ColorChoice::Never;
         let width = terminal_size::terminal_size_of(stderr()).map_or(WIDTH, |(width, _)| width.0.into());
         let unicode = !interactive || locale_is_unicode();
-        Terminal { interactive, style: Style { color, unicode, width } }
+        Terminal { interactive, style: Style { color, unicode, width }, silent: false }
+    }
+
+    /// One on which nobody reads.
+    pub fn silent() -> Terminal {
+        let style = Style { color: false, unicode: true, width: WIDTH };
+        Terminal { interactive: false, style, silent: true }
     }
 
     /// How text on it looks.
@@ -55,6 +63,9 @@ impl Terminal {
 
     /// Writes a text that has its line ends.
     pub fn text(self, text: &str) {
+        if self.silent {
+            return;
+        }
         let mut stderr = stderr().lock();
         let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
     }

@@ -29,7 +29,7 @@ impl PartialOrd for Location {
 }
 
 /// Bytes of a file, and what stands there afterwards.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Edit {
     /// What is replaced; empty where text is put in.
     pub at: Location,

@@ -5,12 +5,36 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 /// What a click on a place does.
-#[derive(Debug)]
 pub struct Editor {
     template: String,
-    /// The words of the command, if one is run.
-    command: Option<Vec<String>>,
+    /// What is done in place of following the address.
+    opener: Option<Opener>,
 }
+
+/// How places are opened from here.
+enum Opener {
+    /// By a command, of these words.
+    Command(Vec<String>),
+    /// By whoever is told.
+    Told(Tell),
+}
+
+/// Hears of places that are to be opened.
+pub type Tell = Box<dyn Fn(Opened) + Send + Sync>;
+
+/// A place that is to be opened.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Opened {
+    /// The file, as the scene's files are named.
+    pub file: String,
+    /// From 1.
+    pub line: u32,
+    /// From 1, in characters.
+    pub column: u32,
+}
+
+/// The address of a place where nobody says another.
+const ADDRESS: &str = "vscode://file{file}:{line}:{column}";
 
 /// The variable that names the command.
 const VARIABLE: &str = "RTC_EDITOR";
@@ -41,7 +65,12 @@ impl Editor {
             return Err(problem
                 .help(format!("set it: `export {VARIABLE}='code --goto {{file}}:{{line}}:{{column}}'`")));
         }
-        Ok(Editor { template, command })
+        Ok(Editor { template, opener: command.map(Opener::Command) })
+    }
+
+    /// One that is told of places.
+    pub fn told(tell: Tell) -> Editor {
+        Editor { template: ADDRESS.into(), opener: Some(Opener::Told(tell)) }
     }
 
     /// The address that a place leads to, with `{file}`, `{line}` and `{column}` to be put in.
@@ -49,18 +78,25 @@ impl Editor {
         &self.template
     }
 
-    /// Whether a command is run.
+    /// Whether places are opened from here.
     pub fn runs(&self) -> bool {
-        self.command.is_some()
+        self.opener.is_some()
     }
 
-    /// Runs the command for a place in one of the files of a scene.
+    /// Opens a place in one of the files of a scene.
     pub fn open(&self, file: &str, line: u32, column: u32, files: &[String]) -> Result<(), String> {
-        let Some(words) = &self.command else { return Err("no command opens places here".into()) };
+        let Some(opener) = &self.opener else { return Err("no command opens places here".into()) };
         let path = absolute(file);
         if !files.iter().any(|known| absolute(known) == path) {
             return Err(format!("`{file}` is no file of the scene"));
         }
+        let words = match opener {
+            Opener::Command(words) => words,
+            Opener::Told(tell) => {
+                tell(Opened { file: file.into(), line, column });
+                return Ok(());
+            }
+        };
         let filled = filled(words, &path.to_string_lossy(), line, column);
         let Some((program, arguments)) = filled.split_first() else { return Ok(()) };
         spawn(Command::new(program).args(arguments))

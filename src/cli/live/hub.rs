@@ -84,6 +84,19 @@ pub struct Status {
     pub notes: Vec<String>,
     /// The files that the scene is made of, as the user names them.
     pub files: Vec<String>,
+    /// Where the cursor of an editor stands that tells of it.
+    pub cursor: Option<Cursor>,
+}
+
+/// A place in a file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Cursor {
+    /// The file.
+    pub file: String,
+    /// From 1.
+    pub line: u32,
+    /// From 1, in characters.
+    pub column: u32,
 }
 
 /// What is done now.

@@ -29,7 +29,7 @@ mod painter;
 mod reader;
 mod said;
 mod serve;
-mod watcher;
+pub mod watcher;
 mod work;
 mod writer;
 
@@ -41,15 +41,17 @@ use super::target::{Target, print};
 use super::terminal::Terminal;
 use super::{Exit, Problem, build, plain};
 use desk::Desk;
-use editor::Editor;
+pub use editor::Opened;
+use editor::{Editor, Tell};
 use engine::Engine;
-use hub::{Hub, Request};
+use hub::{Cursor, Hub, Request};
 use painter::Painter;
 use rayon::ThreadPoolBuilder;
-use reader::Reader;
+use reader::{Load, Reader};
 use serve::Wanted;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::mpsc::Receiver;
 use std::time::Duration;
 use watcher::Watcher;
 use writer::Writer;
@@ -57,6 +59,71 @@ use writer::Writer;
 /// Follows a scene until the process is asked to end.
 pub fn run(arguments: &Watch, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
     let targets = outputs(arguments)?;
+    let own: Vec<PathBuf> = targets.iter().map(|target| target.path.clone()).collect();
+    let Started { hub, requests, desk } = start(arguments, targets, terminal, interrupt)?;
+    if let Some(address) = arguments.serve {
+        let editor = Editor::new(arguments.editor_url.clone(), arguments.open_with)?;
+        show(hub.clone(), Wanted { address, editor }, arguments.open)?;
+    }
+    let watcher = watcher(arguments, &hub)?;
+    let reader = Reader::new(&arguments.scene, &arguments.reading, arguments.taking.overrides(), &own);
+    Engine::new(arguments, reader, watcher, desk, hub, interrupt.clone(), terminal).run(&requests)
+}
+
+/// A preview that is served until the process ends.
+pub struct Live {
+    /// The address of its page.
+    pub url: String,
+    hub: Arc<Hub>,
+}
+
+impl Live {
+    /// What is shown may be out of date.
+    pub fn look(&self) {
+        self.hub.ask(Request::Look);
+    }
+
+    /// A cursor stands at a place, line and column from 1.
+    pub fn point(&self, file: &str, line: u32, column: u32) {
+        self.hub.say(|status| status.cursor = Some(Cursor { file: file.into(), line, column }));
+    }
+}
+
+/// Serves a scene that is read by `load`, and tells of places that are clicked on.
+pub fn preview(
+    arguments: &Watch,
+    load: Load,
+    tell: Tell,
+    terminal: Terminal,
+    interrupt: &Interrupt,
+) -> Result<Live, Problem> {
+    let Started { hub, requests, desk } = start(arguments, vec![], terminal, interrupt)?;
+    let address = arguments.serve.ok_or_else(|| Problem::new("there is nothing to serve"))?;
+    let url = serve::start(hub.clone(), Wanted { address, editor: Editor::told(tell) })?;
+    let watcher = watcher(arguments, &hub)?;
+    let reader =
+        Reader::new(&arguments.scene, &arguments.reading, arguments.taking.overrides(), &[]).by(load);
+    let engine = Engine::new(arguments, reader, watcher, desk, hub.clone(), interrupt.clone(), terminal);
+    let follow = move || engine.run(&requests);
+    let started = std::thread::Builder::new().name("follow".into()).spawn(follow);
+    started.map_err(|error| Problem::new(format!("cannot start a thread: {error}")))?;
+    Ok(Live { url, hub })
+}
+
+/// What is there before anything is read.
+struct Started {
+    hub: Arc<Hub>,
+    requests: Receiver<Request>,
+    desk: Arc<Desk>,
+}
+
+/// Starts what paints and what writes.
+fn start(
+    arguments: &Watch,
+    targets: Vec<Target>,
+    terminal: Terminal,
+    interrupt: &Interrupt,
+) -> Result<Started, Problem> {
     let threads = || ThreadPoolBuilder::new().num_threads(arguments.taking.threads.unwrap_or(0));
     let problem = |error| Problem::new(format!("cannot start the threads: {error}"));
     let front = threads().build().map_err(problem)?;
@@ -68,7 +135,6 @@ pub fn run(arguments: &Watch, terminal: Terminal, interrupt: &Interrupt) -> Resu
         targets => format!("{}: ", build::names(targets)),
     };
     let depth = arguments.taking.look.bits;
-    let own: Vec<PathBuf> = targets.iter().map(|target| target.path.clone()).collect();
     let writer = match targets.is_empty() {
         true => None,
         false => Some(Writer::start(targets, depth, interrupt.clone(), terminal)?),
@@ -85,14 +151,13 @@ pub fn run(arguments: &Watch, terminal: Terminal, interrupt: &Interrupt) -> Resu
     };
     let started = std::thread::Builder::new().name("paint".into()).spawn(move || painter.run());
     started.map_err(|error| Problem::new(format!("cannot start a thread: {error}")))?;
-    if let Some(address) = arguments.serve {
-        let editor = Editor::new(arguments.editor_url.clone(), arguments.open_with)?;
-        show(hub.clone(), Wanted { address, editor }, arguments.open)?;
-    }
+    Ok(Started { hub, requests, desk })
+}
+
+/// Tells when files may have changed.
+fn watcher(arguments: &Watch, hub: &Arc<Hub>) -> Result<Watcher, Problem> {
     let told = hub.clone();
-    let watcher = Watcher::new(arguments.poll.map(Duration::from_millis), move || told.ask(Request::Look))?;
-    let reader = Reader::new(&arguments.scene, &arguments.reading, arguments.taking.overrides(), &own);
-    Engine::new(arguments, reader, watcher, desk, hub, interrupt.clone(), terminal).run(&requests)
+    Watcher::new(arguments.poll.map(Duration::from_millis), move || told.ask(Request::Look))
 }
 
 /// Lets a thread work only where no other wants to: editors, browsers and compilers are not to wait for a picture.

@@ -56,11 +56,16 @@ struct Known {
     length: usize,
 }
 
+/// Reads and compiles a scene in another way: of texts that are not saved.
+pub type Load = Box<dyn Fn(&Reading, &Overrides) -> Result<Loaded, Problem> + Send>;
+
 /// Reads a scene whenever what it reads has changed.
 pub struct Reader {
     scene: PathBuf,
     reading: Reading,
     overrides: Overrides,
+    /// In place of the disk: what it gives is whole, and may be new whenever somebody looks.
+    load: Option<Load>,
     /// What is written by the one who reads: never a reason to read.
     own: BTreeSet<PathBuf>,
     known: BTreeMap<PathBuf, Known>,
@@ -89,12 +94,18 @@ impl Reader {
             scene: scene.into(),
             reading: reading.clone(),
             overrides,
+            load: None,
             own: own.iter().filter_map(|path| std::path::absolute(path).ok()).collect(),
             known: BTreeMap::new(),
             text: String::new(),
             doubtful: None,
             still: None,
         }
+    }
+
+    /// The same, in another way.
+    pub fn by(self, load: Load) -> Reader {
+        Reader { load: Some(load), ..self }
     }
 
     /// The settings of the command line by name, which are then for the caller to give. None where they are not all of
@@ -119,6 +130,7 @@ impl Reader {
     /// Looks whether something has changed, and if so reads and compiles. `set` stands beside the settings of the command
     /// line, in whose place it comes; `anyway` compiles also what is the same; `reads` is called before anything is read.
     pub fn look(&mut self, set: &BTreeMap<String, String>, anyway: bool, reads: impl FnOnce()) -> Seen {
+        let anyway = anyway || self.load.is_some();
         if !anyway && self.doubtful.is_none() && !self.known.is_empty() && !self.has_changed() {
             return Seen::Same;
         }
@@ -126,7 +138,10 @@ impl Reader {
         let reading = Reading { set: settings(&self.reading.set, set), ..self.reading.clone() };
         // Looked at before they are read: what changes in between looks otherwise later.
         let looks = self.files().map(|path| (absolute(&path), look(&path))).collect();
-        let loaded = scene::load(&self.scene, &reading, &self.overrides);
+        let loaded = match &self.load {
+            Some(load) => load(&reading, &self.overrides),
+            None => scene::load(&self.scene, &reading, &self.overrides),
+        };
         let known = self.read_by(&loaded, &looks);
         if let Some(wait) = self.doubt(&loaded, &known) {
             return Seen::Later(wait);
@@ -145,6 +160,9 @@ impl Reader {
         loaded: &Result<Loaded, Problem>,
         known: &BTreeMap<PathBuf, Known>,
     ) -> Option<Duration> {
+        if self.load.is_some() {
+            return None;
+        }
         let had = |path: &PathBuf| self.known.get(path).is_some_and(|before| before.length > 0);
         let emptied = known.iter().any(|(path, now)| now.length == 0 && had(path));
         let (wrong, cut) = match loaded {

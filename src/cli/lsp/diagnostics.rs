@@ -1,7 +1,7 @@
 //! What is said of documents, to the client.
 
 use super::analyst::{Meaning, uri};
-use super::documents::Key;
+use super::documents::{Key, MOST_TEXT};
 use super::view::View;
 use gen_lsp_types as lsp;
 use rt_lang::diagnostic::{Code, Diagnostic, Severity};
@@ -16,6 +16,9 @@ pub type Found = BTreeMap<Key, Vec<lsp::Diagnostic>>;
 /// What an analysis says of each file.
 pub fn found(meaning: &Meaning, key: &Key, view: &View) -> Found {
     let mut found = Found::from([(key.clone(), vec![])]);
+    if view.documents.get(key).is_some_and(|document| document.is_too_long) {
+        return Found::from([(key.clone(), vec![too_long()])]);
+    }
     let mut more: BTreeMap<Key, usize> = BTreeMap::new();
     for diagnostic in &meaning.analysis.diagnostics {
         let file = meaning.key(diagnostic.primary.span.source);
@@ -30,6 +33,20 @@ pub fn found(meaning: &Meaning, key: &Key, view: &View) -> Found {
         found.entry(file).or_default().push(further(count));
     }
     found
+}
+
+/// Says that a document is not looked at.
+fn too_long() -> lsp::Diagnostic {
+    lsp::Diagnostic {
+        severity: Some(lsp::DiagnosticSeverity::Error),
+        code: Some(lsp::Code::String(Code::E0406.as_str().into())),
+        source: Some("rtc".into()),
+        message: lsp::Message::String(format!(
+            "a document has at most {} MiB, this is longer",
+            MOST_TEXT >> 20
+        )),
+        ..lsp::Diagnostic::default()
+    }
 }
 
 /// Says that there is more.

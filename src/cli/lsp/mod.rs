@@ -16,7 +16,7 @@
 //! | [`requests`] | one question of the protocol each |
 //! | [`diagnostics`], [`pages`] | what is said of documents, and where it is explained |
 //! | [`edits`] | what is different between two texts |
-//! | [`commands`], [`render`] | what a person can have done |
+//! | [`commands`], [`render`], [`preview`] | what a person can have done |
 
 mod analyst;
 mod capabilities;
@@ -29,6 +29,7 @@ mod edits;
 mod frame;
 mod message;
 mod pages;
+mod preview;
 mod render;
 mod requests;
 mod server;

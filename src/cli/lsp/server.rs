@@ -7,12 +7,14 @@ use super::commands::{self, Order};
 use super::diagnostics::Board;
 use super::documents::{Documents, Key};
 use super::pages::Pages;
+use super::preview::{self, Previews};
 use super::requests::{self, read};
 use super::uri::path_of;
 use super::view::{Session, View};
 use super::work::{Answer, Desk, Failure, Question, Told};
 use crate::cli::Exit;
 use crate::cli::interrupt::Interrupt;
+use crate::cli::live::watcher::Watcher;
 use crossbeam_channel::{Receiver, Sender, bounded, select};
 use gen_lsp_types as lsp;
 use lsp::LspNotificationMethod as Method;
@@ -28,6 +30,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const MOST_WAITING: usize = 1_000;
 /// What threads tell that waits to be heard.
 const QUEUE: usize = 64;
+
+/// Tells where the cursor is, by document and position: clients that can send it more often than they ask anything.
+const CURSOR: &str = "rtc/cursor";
 
 /// Where in its life the server is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +54,9 @@ pub struct Server {
     /// Where others tell something.
     tell: Sender<Told>,
     interrupt: Interrupt,
+    previews: Previews,
+    /// Tells of files that change, where the client does not.
+    watcher: Option<Watcher>,
     /// What waits for an answer, each with what says that none is wanted.
     waiting: ReqQueue<Arc<AtomicBool>, ()>,
     count: usize,
@@ -70,10 +78,13 @@ impl Server {
         let (client, pages) = (Client::default(), Pages::default());
         let session = Session { client, encoding: encoding(&Value::Null), root, pages };
         let view = View { session: Arc::new(session), documents: Documents::default(), folders: vec![] };
+        let view = Arc::new(view);
         Ok(Server {
             connection,
             life: Life::New,
-            view: Arc::new(view),
+            previews: Previews::new(view.clone()),
+            view,
+            watcher: None,
             desk: Desk::start(&tell)?,
             told,
             tell,
@@ -165,6 +176,10 @@ impl Server {
             return self.send(id, Err(failure));
         };
         let cancelled = self.register(&id);
+        // Who asks what is used like what is under the cursor has it there.
+        if lsp::LspRequestMethod::from(method) == lsp::LspRequestMethod::TextDocumentDocumentHighlight {
+            self.point(&params);
+        }
         self.desk.ask(lane, Question { id, run, params, view: self.view.clone(), cancelled });
     }
 
@@ -175,9 +190,17 @@ impl Server {
         let (view, told, interrupt) = (self.view.clone(), self.tell.clone(), self.interrupt.clone());
         let order = Order { id, key: Key::of(&about.uri), about, view, cancelled, told, interrupt };
         match command.as_str() {
-            commands::PREVIEW => Err(Failure::plain("there is no preview yet")),
+            commands::PREVIEW => self.preview(&order),
             _ => commands::render(order),
         }
+    }
+
+    /// Shows the picture of a document from now on.
+    fn preview(&mut self, order: &Order) -> Answer<()> {
+        let url = self.previews.start(order)?;
+        let answer = preview::browse(&url, &order.view, &order.told);
+        self.finish(order.id.clone(), answer);
+        Ok(())
     }
 
     /// Waits for an answer from somebody else, who may see whether it is still wanted.
@@ -254,6 +277,7 @@ impl Server {
                 let lsp::DidChangeWorkspaceFoldersParams { event } = read(params)?;
                 self.change_folders(&event);
             }
+            Method::Custom(CURSOR) => self.point(&params),
             // The others make no difference here.
             _ => {}
         }
@@ -270,6 +294,13 @@ impl Server {
             cancelled.store(true, Ordering::Relaxed);
             self.count -= 1;
             self.send(id, Err(Failure::cancelled()));
+        }
+    }
+
+    /// Has the previews show what stands at the cursor.
+    fn point(&self, params: &Value) {
+        if let Ok(lsp::TextDocumentPositionParams { text_document, position }) = read(params.clone()) {
+            self.previews.point(&self.view, &Key::of(&text_document.uri), position);
         }
     }
 
@@ -305,6 +336,7 @@ impl Server {
         let open = keys.into_iter().filter(|key| documents.get(key).is_some());
         let looked: Vec<Key> = open.chain(users).collect();
         self.desk.look(looked, &self.view);
+        self.previews.follow(&self.view);
     }
 
     /// Saved files have changed: only those mean something else that read them there.
@@ -338,6 +370,7 @@ impl Server {
     fn hear(&mut self, told: Told) {
         match told {
             Told::Answered(id, answer) => self.finish(id, answer),
+            Told::Changed => self.saved_at(self.reads.values().flatten().cloned().collect()),
             Told::Notifies(method, params) => self.notify(method, params),
             Told::Asks(method, params) => self.ask_client(method, params),
             Told::Looked { key, view, reads, found } => {
@@ -351,6 +384,7 @@ impl Server {
                 let late = |read: &Key| self.changed.get(read).is_some_and(|&changed| changed > stamp);
                 let again = reads.iter().any(late);
                 self.reads.insert(key.clone(), reads);
+                self.follow();
                 if again {
                     return self.touch(vec![key]);
                 }
@@ -361,9 +395,12 @@ impl Server {
         }
     }
 
-    /// Asks the client to tell of scenes, and what they read, that change on the disk.
+    /// Has the client tell of scenes, and what they read, that change on the disk; or somebody else, where it cannot.
     fn watch(&mut self) {
         if !self.view.session.client.watches {
+            let tell = self.tell.clone();
+            // One that waits to be heard is as good as two.
+            self.watcher = Watcher::new(None, move || drop(tell.try_send(Told::Changed))).ok();
             return;
         }
         let pattern = "**/*.{rt,csv,png,jpg,jpeg,webp,hdr,exr,pfm,ply,obj,stl}";
@@ -386,6 +423,14 @@ impl Server {
     fn ask_client(&mut self, method: String, params: impl serde::Serialize) {
         let request = self.waiting.outgoing.register(method, params, ());
         let _ = self.connection.sender.send(request.into());
+    }
+
+    /// Watches the files that are read where they are saved.
+    fn follow(&mut self) {
+        let Some(watcher) = &mut self.watcher else { return };
+        let saved = |key: &&Key| self.view.documents.get(key).is_none();
+        let files: BTreeSet<&Key> = self.reads.values().flatten().filter(saved).collect();
+        watcher.follow(files.into_iter().filter_map(Key::path).map(PathBuf::from));
     }
 
     fn publish(&self, params: lsp::PublishDiagnosticsParams) {

@@ -70,6 +70,8 @@ pub struct Question {
 pub enum Told {
     /// A question is answered.
     Answered(RequestId, Answer<Value>),
+    /// Files may have changed.
+    Changed,
     /// Something for the client, by method and parameters.
     Notifies(String, Value),
     /// A question for the client, whose answer makes no difference.

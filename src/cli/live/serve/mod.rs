@@ -39,7 +39,6 @@ const USUAL_PORT: u16 = 4877;
 const MOST_PAGES: usize = 8;
 
 /// Where a page is served, and what a click on a place does.
-#[derive(Debug)]
 pub struct Wanted {
     /// An address of this machine; with port 0 on a port that is free.
     pub address: SocketAddr,

@@ -45,6 +45,7 @@ const link = new Link({
     showStatus(status);
     showMessages(status, link.film);
     params.update(status.params);
+    pointAt(status.cursor);
     showWindow(status.crop);
     part("pause").setAttribute("aria-pressed", String(status.paused));
     showCropping();
@@ -227,6 +228,18 @@ divider.addEventListener("keydown", (event) => {
 // ---- places
 
 let looked = null;
+
+/// Lights up what stands at the cursor of an editor, until the pointer here is at another place.
+let pointed = null;
+async function pointAt(cursor) {
+  const name = JSON.stringify(cursor);
+  if (name === pointed) return;
+  pointed = name;
+  if (looked || !cursor) return;
+  const mask = await link.ask({ type: "light", ...cursor }).catch(() => null);
+  if (name === pointed && !looked) view.light(mask);
+}
+
 listen({
   async look(at) {
     looked = at;

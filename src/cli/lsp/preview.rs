@@ -1,0 +1,161 @@
+//! The preview of a document, saved or not, served from this process: it follows what stands in the editor, a click on a
+//! place of the page leads there, and the pixels are lit that show what stands at the cursor.
+
+use super::commands::Order;
+use super::documents::{Key, place};
+use super::uri::uri_of;
+use super::view::View;
+use super::work::{Answer, Failure, Told};
+use crate::cli::Problem;
+use crate::cli::args::{Arguments, Command, Reading};
+use crate::cli::files::Disk;
+use crate::cli::input::Input;
+use crate::cli::live::{self, Live, Opened};
+use crate::cli::scene::{self, Loaded};
+use crate::cli::terminal::Terminal;
+use clap::Parser;
+use crossbeam_channel::Sender;
+use gen_lsp_types::{self as lsp, Position};
+use rt_lang::lower::Overrides;
+use rt_lang::source::Source;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// What is open now, for previews that read it on their own threads.
+pub type Newest = Arc<Mutex<Arc<View>>>;
+
+/// The previews that are served, by document and camera.
+pub struct Previews {
+    newest: Newest,
+    served: BTreeMap<(Key, Option<String>), Live>,
+}
+
+impl Previews {
+    /// None yet.
+    pub fn new(view: Arc<View>) -> Previews {
+        Previews { newest: Arc::new(Mutex::new(view)), served: BTreeMap::new() }
+    }
+
+    /// Serves a preview, or finds the one that is served, and gives its address.
+    pub fn start(&mut self, order: &Order) -> Answer<String> {
+        let Order { key, about, view, told, interrupt, .. } = order;
+        let path =
+            key.path().ok_or_else(|| Failure::plain("save it first: what it reads is found from there"))?;
+        let served = (key.clone(), about.camera.clone());
+        if let Some(live) = self.served.get(&served) {
+            return Ok(live.url.clone());
+        }
+        *lock(&self.newest) = view.clone();
+        let wrong = |problem: Problem| Failure::plain(problem.message);
+        let watch = flags(path, about.camera.as_deref())?;
+        let (newest, of) = (self.newest.clone(), key.clone());
+        let load = move |reading: &Reading, overrides: &Overrides| load(&newest, &of, reading, overrides);
+        let (newest, told) = (self.newest.clone(), told.clone());
+        let show = move |opened: Opened| show(&newest, &told, &opened);
+        let live = live::preview(&watch, Box::new(load), Box::new(show), Terminal::silent(), interrupt)
+            .map_err(wrong)?;
+        let url = live.url.clone();
+        self.served.insert(served, live);
+        Ok(url)
+    }
+
+    /// Texts have changed.
+    pub fn follow(&self, view: &Arc<View>) {
+        if !self.served.is_empty() {
+            *lock(&self.newest) = view.clone();
+            self.served.values().for_each(Live::look);
+        }
+    }
+
+    /// The cursor stands somewhere: the pages light up what is there.
+    pub fn point(&self, view: &View, key: &Key, position: Position) {
+        let Some((path, document)) = key.path().zip(view.documents.get(key)) else { return };
+        if self.served.is_empty() {
+            return;
+        }
+        let text = document.text.whole();
+        let byte = document.text.byte(place(position), view.session.encoding);
+        let line = text[..byte].rfind('\n').map_or(0, |at| at + 1);
+        let (row, column) = (text[..line].matches('\n').count() + 1, text[line..byte].chars().count() + 1);
+        self.served
+            .values()
+            .for_each(|live| live.point(&path.display().to_string(), row as u32, column as u32));
+    }
+}
+
+/// The flags of a command that would serve it.
+fn flags(path: &Path, camera: Option<&str>) -> Answer<crate::cli::args::Watch> {
+    let mut words = vec!["rtc".into(), "watch".into(), "--serve".into(), "--quiet".into()];
+    words.extend(camera.map(|camera| format!("--camera={camera}").into()));
+    words.extend(["--".into(), path.as_os_str().to_owned()]);
+    match Arguments::try_parse_from(words).map(|arguments| arguments.command) {
+        Ok(Command::Watch(watch)) => Ok(watch),
+        _ => Err(Failure::plain("this cannot be shown")),
+    }
+}
+
+/// Compiles a document as it stands in the editor, or as it is saved where it is closed.
+fn load(newest: &Newest, key: &Key, reading: &Reading, overrides: &Overrides) -> Result<Loaded, Problem> {
+    let view = lock(newest).clone();
+    let Some(path) = key.path() else { return Err(Problem::new("this has no place on the disk")) };
+    let own = path.parent().unwrap_or(Path::new("/"));
+    let root = view.session.root.as_deref().filter(|root| path.starts_with(root)).unwrap_or(own);
+    let Some(document) = view.documents.get(key) else {
+        return scene::load(path, &Reading { root: Some(root.into()), ..reading.clone() }, overrides);
+    };
+    let disk = Disk::below(root)?;
+    let place = disk.path_of(path)?;
+    for (key, document) in view.documents.iter() {
+        if let Some(place) = key.path().and_then(|path| disk.path_of(path).ok()) {
+            disk.hold(place, document.text.whole().as_bytes());
+        }
+    }
+    let source = Source::new(path.display().to_string(), document.text.whole().to_string());
+    Ok(scene::take_from(disk, place, Input::of(source), reading, overrides))
+}
+
+/// Has the client show a place that was clicked on.
+fn show(newest: &Newest, told: &Sender<Told>, opened: &Opened) {
+    let Ok(path) = std::path::absolute(&opened.file) else { return };
+    let view = lock(newest).clone();
+    let key = Key::File(path.clone());
+    let line = opened.line.saturating_sub(1);
+    // Without the text the line is near enough.
+    let document = view.documents.get(&key);
+    let position = document.and_then(|document| {
+        let text = document.text.whole();
+        let start = text.split_inclusive('\n').take(line as usize).map(str::len).sum::<usize>();
+        let before = text.get(start..)?.chars().take(opened.column.saturating_sub(1) as usize);
+        let byte = start + before.map(char::len_utf8).sum::<usize>();
+        Some(super::analyst::position(&document.text, byte, view.session.encoding))
+    });
+    let position = position.unwrap_or(Position { line, character: 0 });
+    let uri = document.map_or_else(|| uri_of(&path).into(), |document| document.uri.clone());
+    let params = lsp::ShowDocumentParams {
+        uri,
+        external: None,
+        take_focus: Some(true),
+        selection: Some(lsp::Range { start: position, end: position }),
+    };
+    let method = lsp::LspRequestMethod::WindowShowDocument.as_str().to_string();
+    let _ = told.send(Told::Asks(method, json!(params)));
+}
+
+/// Asks the client to open a page, or the browser itself where it cannot.
+pub fn browse(url: &str, view: &View, told: &Sender<Told>) -> Answer<Value> {
+    if view.session.client.shows {
+        let method = lsp::LspRequestMethod::WindowShowDocument.as_str().to_string();
+        let _ = told.send(Told::Asks(method, json!({ "uri": url, "external": true })));
+    } else {
+        let problem = |_| Failure::plain(format!("no browser opens: open {url} yourself"));
+        open::that_detached(url).map_err(problem)?;
+    }
+    Ok(json!({ "url": url }))
+}
+
+/// What is there is replaced as a whole.
+fn lock(newest: &Newest) -> std::sync::MutexGuard<'_, Arc<View>> {
+    newest.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,182 @@
+//! The answers of the library as the protocol has them: places, edits of several files, and what is refused.
+
+use super::super::Desk;
+use super::client::Client;
+use serde_json::{Value, json};
+
+const SCENE: &str = "\
+/// How many balls.
+param count: int = 3 in 1 to 9
+material red = diffuse { color: #d94f30 }
+for i in range(count) {
+  sphere { at: (i, 0, 0)m, radius: 40cm, material: red }
+}
+camera { from: (0, 1, 4)m, look: (0, 0.5, 0)m }
+";
+
+fn about(client: &Client, name: &str, more: Value) -> Value {
+    let mut params = json!({ "textDocument": { "uri": client.uri(name) } });
+    params.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+    params
+}
+
+/// The place of some words of a text of ASCII, in its last line that has them.
+fn at(text: &str, words: &str) -> [u32; 2] {
+    let byte = text.rfind(words).unwrap();
+    let line = text[..byte].rfind('\n').map_or(0, |at| at + 1);
+    [text[..byte].matches('\n').count() as u32, (byte - line) as u32]
+}
+
+/// The edits of an answer, by the end of the address of their file.
+fn edits(answer: &Value) -> Vec<(String, usize, Option<i64>)> {
+    let change = |change: &Value| {
+        let uri = change["textDocument"]["uri"].as_str().unwrap();
+        let name = uri.rsplit('/').next().unwrap().to_string();
+        (name, change["edits"].as_array().unwrap().len(), change["textDocument"]["version"].as_i64())
+    };
+    let mut edits: Vec<_> = answer["documentChanges"].as_array().unwrap().iter().map(change).collect();
+    edits.sort();
+    edits
+}
+
+#[test]
+fn a_name_tells_what_it_is_and_who_uses_it() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    client.open("a.rt", SCENE);
+    let [line, character] = at(SCENE, "red }");
+    let hover = client.at("textDocument/hover", "a.rt", line, character).unwrap();
+    let said = hover["contents"]["value"].as_str().unwrap();
+    assert!(said.contains("material red"), "{said}");
+    let definition = client.at("textDocument/definition", "a.rt", line, character).unwrap();
+    assert_eq!(definition["range"]["start"], json!({ "line": 2, "character": 9 }));
+    let highlights = client.at("textDocument/documentHighlight", "a.rt", line, character).unwrap();
+    assert_eq!(highlights.as_array().unwrap().len(), 2);
+    let named = client.at("textDocument/prepareRename", "a.rt", line, character).unwrap();
+    assert_eq!(named["placeholder"], "red");
+    let hover = client.at("textDocument/hover", "a.rt", 3, at(SCENE, "count) {")[1]).unwrap();
+    let said = hover["contents"]["value"].as_str().unwrap();
+    assert!(said.contains("param count: int") && said.contains("How many balls."), "{said}");
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn names_are_changed_in_all_files_open_or_not() {
+    let desk = Desk::new();
+    let woods = "material oak = diffuse { color: #705848 }\n";
+    desk.put("woods.rt", woods);
+    desk.put("saved.rt", "import \"woods.rt\" as woods\nsphere { radius: 1m, material: woods.oak }\n");
+    desk.put("other.rt", "material oak = diffuse {}\nsphere { radius: 1m, material: oak }\n");
+    let mut client = Client::new(&desk);
+    client.open("woods.rt", woods);
+    client.open("open.rt", "import \"woods.rt\" as w\nbox { size: (1, 1, 1)m, material: w.oak }\n");
+    let params =
+        about(&client, "woods.rt", json!({ "position": { "line": 0, "character": 10 }, "newName": "elm" }));
+    let renamed = client.ask("textDocument/rename", params).unwrap();
+    let expected = [("open.rt", 1, Some(1)), ("saved.rt", 1, None), ("woods.rt", 1, Some(1))]
+        .map(|(a, b, c)| (a.to_string(), b, c));
+    assert_eq!(edits(&renamed), expected);
+    let params =
+        json!({ "position": { "line": 0, "character": 10 }, "context": { "includeDeclaration": true } });
+    let params = about(&client, "woods.rt", params);
+    let found = client.ask("textDocument/references", params).unwrap();
+    assert_eq!(found.as_array().unwrap().len(), 3);
+    // A name that is none is refused with the reason.
+    let params =
+        about(&client, "woods.rt", json!({ "position": { "line": 0, "character": 10 }, "newName": "8" }));
+    assert_eq!(client.ask("textDocument/rename", params).unwrap_err()["code"], -32803);
+    let symbols = client.ask("workspace/symbol", json!({ "query": "oak" })).unwrap();
+    assert_eq!(symbols.as_array().unwrap().len(), 2, "{symbols}");
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn slips_have_mends_and_warnings_can_be_allowed() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    client.open("a.rt", "sphere { radius = 8mm }\nlet spare = 1m\n");
+    let whole = json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 2, "character": 0 } });
+    let ask = |client: &mut Client, only: Value| {
+        let context = json!({ "diagnostics": [], "only": only });
+        let params = about(client, "a.rt", json!({ "range": whole, "context": context }));
+        client.ask("textDocument/codeAction", params).unwrap()
+    };
+    let mends = ask(&mut client, json!(["quickfix"]));
+    assert_eq!(
+        (&mends[0]["isPreferred"], &mends[0]["diagnostics"][0]["code"]),
+        (&json!(true), &json!("E0003"))
+    );
+    assert_eq!(edits(&mends[0]["edit"]), [("a.rt".to_string(), 1, Some(1))]);
+    let all = ask(&mut client, json!(["source.fixAll"]));
+    assert_eq!((all.as_array().unwrap().len(), &all[0]["kind"]), (1, &json!("source.fixAll")));
+    client.replace("a.rt", 2, "sphere { radius: 8mm }\nlet spare = 1m\n");
+    let allowed = ask(&mut client, Value::Null);
+    let titles: Vec<&str> =
+        allowed.as_array().unwrap().iter().filter_map(|one| one["title"].as_str()).collect();
+    assert!(titles.iter().any(|title| title.to_lowercase().contains("allow")), "{titles:?}");
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn what_fits_is_offered_in_a_broken_statement_too() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    client.open("a.rt", "sphere { ra\nbox { }\n");
+    let offered = client.at("textDocument/completion", "a.rt", 0, 11).unwrap();
+    let radius = offered.as_array().unwrap().iter().find(|item| item["label"] == "radius").unwrap();
+    assert_eq!(radius["textEdit"]["range"]["start"], json!({ "line": 0, "character": 9 }));
+    client.replace("a.rt", 2, "sphere { radius: linspace(1m, ");
+    let called = client.at("textDocument/signatureHelp", "a.rt", 0, 30).unwrap();
+    assert!(called["signatures"][0]["label"].as_str().unwrap().starts_with("linspace("), "{called}");
+    assert_eq!(called["signatures"][0]["activeParameter"], 1);
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn the_text_is_told_in_its_parts() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    client.open("a.rt", SCENE);
+    let none = json!({});
+    let mut ask = |method: &str, more: &Value| {
+        let params = about(&client, "a.rt", more.clone());
+        client.ask(&format!("textDocument/{method}"), params).unwrap()
+    };
+    let tokens = ask("semanticTokens/full", &none);
+    let numbers = tokens["data"].as_array().unwrap().len();
+    assert!(numbers > 100 && numbers % 5 == 0, "{numbers}");
+    let colours = ask("documentColor", &none);
+    assert_eq!(colours[0]["range"]["start"], json!({ "line": 2, "character": 32 }));
+    let range = &colours[0]["range"];
+    let blue = json!({ "red": 0, "green": 0, "blue": 1, "alpha": 1 });
+    let ways = ask("colorPresentation", &json!({ "color": blue, "range": range }));
+    assert_eq!(ways[0]["textEdit"]["newText"], "#0000ff");
+    let names: Vec<String> = ask("documentSymbol", &none)
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|symbol| symbol["name"].as_str().unwrap().to_string())
+        .collect();
+    assert!(names.contains(&"count".into()) && names.contains(&"red".into()), "{names:?}");
+    let folds = ask("foldingRange", &none);
+    assert!(folds.as_array().unwrap().iter().any(|fold| fold["startLine"] == 3), "{folds}");
+    let grown = ask("selectionRange", &json!({ "positions": [{ "line": 4, "character": 4 }] }));
+    assert!(grown[0]["parent"].is_object(), "{grown}");
+    let lenses = ask("codeLens", &none);
+    let commands: Vec<&str> =
+        lenses.as_array().unwrap().iter().map(|lens| lens["command"]["command"].as_str().unwrap()).collect();
+    assert_eq!(commands, ["rtc.startPreview", "rtc.render"]);
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn a_file_that_somebody_else_changes_is_seen_where_the_client_does_not_tell() {
+    let desk = Desk::new();
+    desk.put("woods.rt", "material oak = diffuse { color: 8 }\n");
+    let mut client = Client::new(&desk);
+    client.open("scene.rt", "import \"woods.rt\" as woods\nsphere { radius: 1m, material: woods.oak }\n");
+    assert_eq!(client.codes("woods.rt", None), ["E0205"]);
+    desk.put("woods.rt", "material oak = diffuse { color: #705848 }\n");
+    assert_eq!(client.codes("woods.rt", None), Vec::<String>::new());
+    assert_eq!(client.end(), Some(0));
+}
