@@ -91,7 +91,9 @@
   (looking-at-p "[ \t]*\\(?:|>\\|->\\|[*+<>]\\|[=!]=\\|\\.[[:alpha:]_]\\|\\(?:and\\|or\\|to\\|then\\)\\_>\\|else\\_>[ \t]*[^ \t\n{i]\\)"))
 
 (defun rt-indent-line ()
-  "Indent the line: by `rt-indent-offset' for each bracket around it, and once more where it goes on."
+  "Indent the line at point.
+That is by `rt-indent-offset' for each bracket around it, and once
+more where it goes on with the line before."
   (interactive)
   (let* ((state (save-excursion (syntax-ppss (line-beginning-position))))
          (column

@@ -7,6 +7,13 @@ vim.g.loaded_rtc = true
 
 if vim.g.rtc_lsp ~= false and vim.lsp.enable then
   vim.lsp.enable('rtc')
+  -- Where init.lua says `syntax on`, the first file has its type before this is read.
+  vim.api.nvim_create_autocmd('VimEnter', {
+    once = true,
+    callback = function()
+      vim.lsp.enable('rtc')
+    end,
+  })
 end
 
 vim.api.nvim_create_user_command('RtcParser', function(arguments)

@@ -82,7 +82,7 @@ def main():
     child, terminal = pty.fork()
     if child == 0:
         environment = dict(os.environ, TERM="xterm-256color", COLORTERM="truecolor", ROOT=root)
-        commands = ["set termguicolors number signcolumn=yes", "lua vim.diagnostic.config({ virtual_text = true })"]
+        commands = ["set termguicolors number signcolumn=yes wrap", "colorscheme habamax", "lua vim.diagnostic.config({ virtual_lines = true })"]
         os.execve(nvim, [nvim, "-u", init, *[part for c in commands for part in ("-c", c)], "shown.rt"], environment)
     ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", LINES, COLUMNS, 0, 0))
     screen = pyte.Screen(COLUMNS, LINES)
