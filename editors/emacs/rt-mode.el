@@ -136,9 +136,12 @@ more where it goes on with the line before."
   (interactive)
   (unless (and (fboundp 'eglot-current-server) (eglot-current-server))
     (user-error "The language server is not running: M-x eglot"))
-  (let ((answer (eglot-execute-command (eglot-current-server) "rtc.startPreview"
-                                       (vector (list :uri (eglot--path-to-uri buffer-file-name))))))
-    (browse-url (if (stringp answer) answer (or (plist-get answer :url) (plist-get answer :uri))))))
+  ;; The server asks for the page to be opened once it is served.  Where its answer is waited for, what it says
+  ;; behind the answer is read by Emacs 28 only when it says something more.
+  (jsonrpc-async-request (eglot-current-server) :workspace/executeCommand
+                         (list :command "rtc.startPreview" :arguments (vector (eglot--TextDocumentIdentifier)))
+                         :success-fn #'ignore
+                         :error-fn (lambda (wrong) (message "rtc: no preview: %s" (plist-get wrong :message)))))
 
 (defun rt-build ()
   "Render this scene; the picture is put beside its file."
@@ -243,14 +246,12 @@ more where it goes on with the line before."
 
 ;; --- The language server ---------------------------------------------------------------------------------------
 
-(defvar eglot-server-programs)
 (declare-function eglot-current-server "eglot")
-(declare-function eglot-execute-command "eglot")
-(declare-function eglot--path-to-uri "eglot")
+(declare-function eglot--TextDocumentIdentifier "eglot")
+(declare-function jsonrpc-async-request "jsonrpc")
 
 (with-eval-after-load 'eglot
-  (add-to-list 'eglot-server-programs
-               (cons '(rt-mode rt-ts-mode) (lambda (&rest _) (list rt-program "lsp")))))
+  (require 'rt-eglot))
 
 (with-eval-after-load 'compile
   (defvar compilation-error-regexp-alist)

@@ -92,12 +92,16 @@ fn emacs(place: &Place) -> Outcome {
     tools::emacs()?;
     let byte_compiled = place.desk.join("compiled");
     fresh(&byte_compiled)?;
-    let mode = byte_compiled.join("rt-mode.el");
-    std::fs::copy(place.root.join("editors/emacs/rt-mode.el"), &mode).map_err(|error| error.to_string())?;
     let strict = "(setq byte-compile-error-on-warn t)";
-    run(alone("emacs".as_ref(), place)
-        .args(["--batch", "--eval", strict, "-f", "batch-byte-compile"])
-        .arg(&mode))?;
+    let mut compile = alone("emacs".as_ref(), place);
+    compile.args(["--batch", "--eval", strict, "-L"]).arg(&byte_compiled).args(["-f", "batch-byte-compile"]);
+    for file in ["rt-mode.el", "rt-eglot.el"] {
+        let copy = byte_compiled.join(file);
+        std::fs::copy(place.root.join("editors/emacs").join(file), &copy)
+            .map_err(|error| error.to_string())?;
+        compile.arg(copy);
+    }
+    run(&mut compile)?;
     run(alone("emacs".as_ref(), place)
         .args(["--batch", "-l"])
         .arg(script(place, "emacs.el"))

@@ -12,42 +12,27 @@ local function client(buffer)
   return found
 end
 
----The address in what the server answers: a text, or a table with it.
----@param answer any
----@return string?
-local function address(answer)
-  if type(answer) == 'table' then
-    answer = answer.url or answer.uri or answer.address
-  end
-  return type(answer) == 'string' and answer or nil
-end
-
----Starts the live preview of a buffer's text, saved or not, and opens its page.
+---Opens the live preview of a buffer's text, saved or not.
 ---@param buffer? integer
----@param open? fun(address: string) instead of `vim.ui.open`
-function M.preview(buffer, open)
+function M.preview(buffer)
   buffer = buffer or vim.api.nvim_get_current_buf()
   local server = client(buffer)
   if not server then
     return
   end
-  M.start_preview(server, { uri = vim.uri_from_bufnr(buffer) }, open)
+  local asked = { command = 'rtc.startPreview', arguments = { { uri = vim.uri_from_bufnr(buffer) } } }
+  -- The server asks for the page to be opened once it is served.
+  server:request('workspace/executeCommand', asked, function(error)
+    if error then
+      vim.notify('rtc: no preview: ' .. error.message, vim.log.levels.ERROR)
+    end
+  end, buffer)
 end
 
----Asks a server for a preview, of the camera that the argument names.
+---Tells the server where the cursor is: the preview lights up what stands there.
 ---@param server vim.lsp.Client
----@param argument table with `uri`, and `camera` where one is meant
----@param open? fun(address: string) instead of `vim.ui.open`
-function M.start_preview(server, argument, open)
-  local asked = { command = 'rtc.startPreview', arguments = { argument } }
-  server:request('workspace/executeCommand', asked, function(error, answer)
-    local page = address(answer)
-    if error or not page then
-      vim.notify('rtc: no preview: ' .. (error and error.message or 'the server gave no address'), vim.log.levels.ERROR)
-      return
-    end
-    (open or vim.ui.open)(page)
-  end)
+function M.tell_cursor(server)
+  server:notify('rtc/cursor', vim.lsp.util.make_position_params(0, server.offset_encoding))
 end
 
 ---Renders the file of a buffer, and says where the picture is.

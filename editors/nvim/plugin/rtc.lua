@@ -20,10 +20,21 @@ vim.api.nvim_create_user_command('RtcParser', function(arguments)
   require('rtc').install_parser(arguments.args ~= '' and arguments.args or nil)
 end, { nargs = '?', complete = 'dir', desc = 'Compile the tree-sitter parser for .rt files' })
 
--- What a code lens asks for: the answer is the address of a page.
-vim.lsp.commands['rtc.startPreview'] = function(command, context)
-  local server = vim.lsp.get_client_by_id(context.client_id)
-  if server then
-    require('rtc').start_preview(server, command.arguments[1])
-  end
-end
+vim.api.nvim_create_autocmd('LspAttach', {
+  desc = 'Tell the live preview of a scene where the cursor is',
+  callback = function(attached)
+    local server = vim.lsp.get_client_by_id(attached.data.client_id)
+    if not server or server.name ~= 'rtc' then
+      return
+    end
+    vim.api.nvim_create_autocmd({ 'CursorMoved', 'CursorHoldI' }, {
+      group = vim.api.nvim_create_augroup('rtc-' .. attached.buf, {}),
+      buffer = attached.buf,
+      callback = function()
+        if not server:is_stopped() then
+          require('rtc').tell_cursor(server)
+        end
+      end,
+    })
+  end,
+})

@@ -2,11 +2,8 @@
 
 import { execFile } from "node:child_process";
 import * as vscode from "vscode";
-import { LanguageClient, type LanguageClientOptions, type ServerOptions } from "vscode-languageclient/node";
+import { LanguageClient, type LanguageClientOptions, type ServerOptions, type ShowDocumentParams } from "vscode-languageclient/node";
 import { Previews } from "./preview";
-
-/** What the server does when asked by name; its code lenses ask so too. */
-const START_PREVIEW = "rtc.startPreview";
 
 let client: LanguageClient | undefined;
 const previews = new Previews();
@@ -21,6 +18,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
       if (change.affectsConfiguration("rtc.path") || change.affectsConfiguration("rtc.arguments")) void restart();
     }),
     vscode.workspace.onDidGrantWorkspaceTrust(restart),
+    vscode.window.onDidChangeTextEditorSelection(moved),
   );
   await start();
 }
@@ -36,11 +34,8 @@ async function start(): Promise<void> {
   const options: LanguageClientOptions = {
     documentSelector: [{ language: "rt" }],
     middleware: {
-      // A code lens asks by the name of the server's command: what it answers is the address of a page.
-      executeCommand: async (command, given, next) => {
-        const answer: unknown = await next(command, given);
-        if (command === START_PREVIEW) await show(answer, given[0]?.uri);
-        return answer;
+      window: {
+        showDocument: async asked => ({ success: await show(asked) }),
       },
     },
   };
@@ -71,22 +66,34 @@ async function preview(): Promise<void> {
     return;
   }
   try {
-    // By the command that the server registers, and so by the middleware above.
-    await vscode.commands.executeCommand(START_PREVIEW, { uri });
+    await vscode.commands.executeCommand("rtc.startPreview", { uri });
   } catch (error) {
     void vscode.window.showErrorMessage(`rtc: no preview: ${said(error)}`);
   }
 }
 
-async function show(answer: unknown, uri: unknown): Promise<void> {
-  const found = typeof answer === "object" && answer !== null ? (answer as { url?: unknown }).url : answer;
-  if (typeof found !== "string") return;
-  const page = vscode.Uri.parse(found);
-  if (setting<string>("preview.in", "beside") === "browser") {
-    await vscode.env.openExternal(page);
+/** Shows what the server asks for: the page of a preview, or the place of a text that was clicked on there. */
+async function show({ uri, external, selection }: ShowDocumentParams): Promise<boolean> {
+  const place = vscode.Uri.parse(uri);
+  if (external) {
+    if (setting<string>("preview.in", "beside") === "browser") return vscode.env.openExternal(place);
+    await previews.show(place);
   } else {
-    await previews.show(page, typeof uri === "string" ? uri : found);
+    // The page has the focus, and is not to be covered by the text.
+    const seen = vscode.window.visibleTextEditors.find(editor => editor.document.uri.toString() === place.toString());
+    const viewColumn = seen?.viewColumn ?? vscode.ViewColumn.One;
+    const range = client?.protocol2CodeConverter.asRange(selection);
+    await vscode.window.showTextDocument(place, { viewColumn, ...(range && { selection: range }) });
   }
+  return true;
+}
+
+/** Tells the server where the cursor is: the preview lights up what stands there. */
+async function moved(change: vscode.TextEditorSelectionChangeEvent): Promise<void> {
+  const { document, selection } = change.textEditor;
+  if (document.languageId !== "rt" || !client?.isRunning()) return;
+  const at = client.code2ProtocolConverter.asTextDocumentPositionParams(document, selection.active);
+  await client.sendNotification("rtc/cursor", at);
 }
 
 /** Renders the active editor's file, and tells where the picture is. */

@@ -1,24 +1,25 @@
-// Editors that hold the page of the live preview, one a scene.
+// Editors that hold pages of live previews.
 
 import * as vscode from "vscode";
 
 export class Previews implements vscode.Disposable {
   private readonly panels = new Map<string, vscode.WebviewPanel>();
 
-  /** Shows a page of this machine beside the text, in the panel of the scene if there is one. */
-  async show(page: vscode.Uri, scene: string): Promise<void> {
+  /** Shows a page of this machine beside the text, in its panel if it has one: each preview has an address of its own. */
+  async show(page: vscode.Uri): Promise<void> {
     // Where the editor runs in a browser or on another machine, the port is forwarded.
     const address = await vscode.env.asExternalUri(page);
-    let panel = this.panels.get(scene);
+    const key = page.toString();
+    let panel = this.panels.get(key);
     if (panel) {
       panel.reveal(undefined, true);
     } else {
-      const name = decodeURIComponent(scene.split("/").pop() ?? "scene");
+      const scene = vscode.window.activeTextEditor?.document.uri.path.split("/").pop();
       const column = { viewColumn: vscode.ViewColumn.Beside, preserveFocus: true };
       const options = { enableScripts: true, retainContextWhenHidden: true };
-      panel = vscode.window.createWebviewPanel("rtc.preview", name, column, options);
-      panel.onDidDispose(() => this.panels.delete(scene));
-      this.panels.set(scene, panel);
+      panel = vscode.window.createWebviewPanel("rtc.preview", scene ? `Preview of ${scene}` : "Preview", column, options);
+      panel.onDidDispose(() => this.panels.delete(key));
+      this.panels.set(key, panel);
     }
     panel.webview.html = frame(address);
   }

@@ -6,7 +6,6 @@
 (defvar rtc (pop command-line-args-left))
 (defvar root (pop command-line-args-left))
 (add-to-list 'load-path (expand-file-name "editors/emacs" root))
-(setq load-prefer-newer t)
 (require 'rt-mode)
 (require 'eglot)
 (setq rt-program rtc
@@ -119,9 +118,18 @@ camera { from: (0, 1, 4)m, look: ball }
 
 (let (page)
   (cl-letf (((symbol-function 'browse-url) (lambda (address &rest _) (setq page address))))
-    (rt-preview))
-  (check (and page (string-match-p "\\`http://127\\.0\\.0\\.1:[0-9]+" page)) (format "%S" page)))
+    (rt-preview)
+    (wait "the page opens" (lambda () page)))
+  (check (string-match-p "\\`http://127\\.0\\.0\\.1:[0-9]+/[[:alnum:]]+/\\'" page) page))
 (tell "the live preview serves the text, saved or not")
+
+(save-window-excursion
+  (goto-char (point-min))
+  (let ((place '(:start (:line 3 :character 7) :end (:line 3 :character 7))))
+    (eglot-handle-request (eglot-current-server) 'window/showDocument
+                          :uri (plist-get (eglot--TextDocumentIdentifier) :uri) :selection place))
+  (check (looking-at "ball { at") (buffer-substring (point) (line-end-position))))
+(tell "a place that is clicked on in the preview is shown")
 
 (save-buffer)
 (eglot-shutdown (eglot-current-server))
