@@ -118,7 +118,7 @@ static const uint64_t INEXACT = UINT64_C(9007199254740992);
 // More digits than the largest number that is finite has.
 static const uint32_t HUGE_DIGITS = 309;
 
-// Reads digits in groups: `1_000`. False if it ends with `_`.
+// Reads digits in groups: `1_000`. False where a `_` stands without digits behind it.
 static bool read_digits(TSLexer *lexer, Size *size) {
   for (;;) {
     if (!is_digit(lexer->lookahead)) return false;
@@ -128,7 +128,7 @@ static bool read_digits(TSLexer *lexer, Size *size) {
     }
     lexer->mark_end(lexer);
     if (lexer->lookahead != '_') return true;
-    while (lexer->lookahead == '_') advance(lexer);
+    advance(lexer);
   }
 }
 

@@ -76,7 +76,9 @@ async function preview(): Promise<void> {
 async function show({ uri, external, selection }: ShowDocumentParams): Promise<boolean> {
   const place = vscode.Uri.parse(uri);
   if (external) {
-    if (setting<string>("preview.in", "beside") === "browser") return vscode.env.openExternal(place);
+    const beside = setting<string>("preview.in", "beside") === "beside";
+    // Where the editor is a page of a browser itself, the preview may not be in it.
+    if (!beside || vscode.env.uiKind === vscode.UIKind.Web) return vscode.env.openExternal(place);
     await previews.show(place);
   } else {
     // The page has the focus, and is not to be covered by the text.
