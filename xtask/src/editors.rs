@@ -83,7 +83,10 @@ fn screen(place: &Place, neovim: &Path) -> Outcome {
     browser.arg(format!("--screenshot={}", picture.display())).arg(format!("file://{}", page.display()));
     let output = browser.output().map_err(|error| format!("chromium does not start: {error}"))?;
     match output.status.success() && picture.exists() {
-        true => Ok(println!("  screen: {}", picture.display())),
+        true => {
+            println!("  screen: {}", picture.display());
+            Ok(())
+        }
         false => Err(String::from_utf8_lossy(&output.stderr).into_owned()),
     }
 }
