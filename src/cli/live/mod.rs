@@ -13,6 +13,7 @@
 //! | [`engine`] | what a new text leads to |
 //! | [`desk`] | where work waits |
 //! | [`painter`], [`work`] | tracing the newest scene, step by step |
+//! | [`mix`] | lamps that became brighter, before they are traced |
 //! | [`answers`], [`lit`] | why a pixel looks as it does, and where a place of the text is seen |
 //! | [`writer`] | pictures to files, in the background |
 //! | [`said`] | what the compiler says, as a page shows it |
@@ -26,6 +27,7 @@ mod editor;
 mod engine;
 pub mod hub;
 mod lit;
+mod mix;
 mod painter;
 mod reader;
 mod said;
