@@ -125,6 +125,6 @@ mod tests {
         let source = Source::new("s.rt", "a\n  béta\r\n\t\r\n");
         let at = |line, column| byte(&source, line, column);
         assert_eq!([at(1, 0), at(2, 0), at(2, 1), at(2, 5)], [Some(0), Some(4), Some(2), Some(7)]);
-        assert_eq!([at(3, 0), at(2, 99), at(9, 0), at(0, 0)], [Some(11), Some(8), None, None]);
+        assert_eq!([at(3, 0), at(2, 99), at(9, 0), at(0, 0)], [Some(12), Some(9), None, None]);
     }
 }
