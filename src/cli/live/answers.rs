@@ -7,7 +7,7 @@ use rt_lang::render::apart::Apart;
 use rt_lang::render::{Control, Prepass, Tracer, Window};
 use rt_lang::scene::{Primitive, PrimitiveId};
 use rt_lang::span::Span;
-use rt_lang::why::Why;
+use rt_lang::why::{SamplesBy, Why};
 use std::time::{Duration, Instant};
 
 /// Samples of a pixel that are watched together.
@@ -58,7 +58,8 @@ fn why(
         tracer.take_apart(pixel, done..most.min(done + TOGETHER), &mut apart);
     }
     let provenance = job.loaded.compiled.provenance(&job.loaded.sources).ok_or("the scene has errors")?;
-    let why = serde_json::to_value(Why::new(pixel, &apart, provenance)).map_err(|error| error.to_string())?;
+    let why = Why::new(pixel, &apart, SamplesBy::Picture, provenance);
+    let why = serde_json::to_value(why).map_err(|error| error.to_string())?;
     Ok(Known { why, more: apart.samples() < most })
 }
 
