@@ -5,7 +5,7 @@ use super::hub::{Frame, Hub, Known};
 use super::lit;
 use rt_lang::render::apart::Apart;
 use rt_lang::render::{Prepass, Tracer};
-use rt_lang::why::Why;
+use rt_lang::why::{SamplesBy, Why};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -57,6 +57,7 @@ fn why(
         tracer.take_apart(pixel, done..most.min(done + TOGETHER), &mut apart);
     }
     let provenance = job.loaded.compiled.provenance(&job.loaded.sources).ok_or("the scene has errors")?;
-    let why = serde_json::to_value(Why::new(pixel, &apart, provenance)).map_err(|error| error.to_string())?;
+    let why = Why::new(pixel, &apart, SamplesBy::Picture, provenance);
+    let why = serde_json::to_value(why).map_err(|error| error.to_string())?;
     Ok(Known { why, more: apart.samples() < most })
 }

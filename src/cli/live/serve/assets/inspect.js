@@ -15,6 +15,9 @@ const PATHS = {
 const MOST_NAME = 18;
 const BRIEF_NAME = 10;
 
+/// The least share that is told of.
+const LEAST_SHARE = 0.0005;
+
 /// The panel. `on` has `ask(x, y, patient)` and `mark(pixel or null)`.
 export class Inspector {
   constructor(on) {
@@ -103,6 +106,7 @@ function told(why) {
       ...(why.normal == null ? [] : entry("normal", why.normal.map((v) => v.toFixed(3).replace("-", "−")).join("  ")))),
     element("h3", {}, "Shows"),
     ...(why.shows.length ? why.shows.map(shown) : [element("p", { class: "hint" }, "Nothing but the background.")]),
+    ...rest(why),
     element("h3", {}, "Light from"),
     shares(why.lights, light),
     element("h3", {}, "By paths"),
@@ -122,6 +126,15 @@ function shown(what) {
     element("span", {}, material.name && material.name !== material.kind ? `${material.name} (${material.kind})` : material.kind),
     material.place ? element("span", { class: "at" }, " ", short(material.place)) : null);
   return element("div", { class: "shown" }, head, uses(what.uses), made);
+}
+
+/// What a pixel shows besides the things that are listed.
+function rest({ shows, others, background }) {
+  if (shows.length === 0) return [];
+  const things = others.count === 1 ? "another thing" : `${count(others.count)} other things`;
+  return [[others.share, things], [background, "the background"]]
+    .filter(([share]) => share >= LEAST_SHARE)
+    .map(([share, what]) => element("p", { class: "thing" }, element("span", {}, what), element("span", { class: "share" }, percent(share))));
 }
 
 function title({ kind, number, count: lights }) {
