@@ -284,7 +284,7 @@ impl Engine {
     /// Says what can be set, and of which files the scene is made.
     fn describe(&self, loaded: &Loaded) {
         let set = |name: &str| self.set.get(name);
-        let params: Vec<Param> = loaded
+        let mut params: Vec<Param> = loaded
             .compiled
             .inventory
             .params
@@ -300,10 +300,13 @@ impl Engine {
                 high: param.range.as_ref().map(|[_, high]| high.clone()),
             })
             .collect();
+        let understood = !params.is_empty() || !any_errors(&loaded.compiled.diagnostics);
+        let gone = self.gone.iter().filter_map(|name| Some((name, self.set.get(name)?)));
+        params.extend(gone.map(|(name, value)| Param::gone(name, value)));
         let files = self.reader.files().map(|path| shown(&path)).collect::<std::collections::BTreeSet<_>>();
         self.hub.say(|status| {
             // A text that could not be understood has no params; those that were are still there to be mended with.
-            if !params.is_empty() || !any_errors(&loaded.compiled.diagnostics) {
+            if understood {
                 status.params = params;
             }
             status.files = files.into_iter().collect();

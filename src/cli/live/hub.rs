@@ -190,6 +190,22 @@ pub struct Param {
     pub high: Option<String>,
 }
 
+impl Param {
+    /// One that is set, and that the file has no more.
+    pub fn gone(name: &str, value: &str) -> Param {
+        Param {
+            name: name.into(),
+            ty: String::new(),
+            doc: None,
+            default: String::new(),
+            value: value.into(),
+            set: true,
+            low: None,
+            high: None,
+        }
+    }
+}
+
 /// Pixels of a picture, chosen or not.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mask {
