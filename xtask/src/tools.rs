@@ -99,6 +99,24 @@ pub fn neovim(folder: &Path) -> Result<PathBuf, String> {
     Ok(program)
 }
 
+/// Has Vim at hand, with what its smallest package lacks.
+pub fn vim() -> Outcome {
+    let knows = [
+        "-N",
+        "-u",
+        "NONE",
+        "-i",
+        "NONE",
+        "-e",
+        "-s",
+        "-c",
+        "if !has('syntax') | cquit | endif",
+        "-c",
+        "qall",
+    ];
+    at_hand("vim", "vim", || Command::new("vim").args(knows).status().is_ok_and(|status| status.success()))
+}
+
 /// Has Emacs at hand, with its client of language servers.
 pub fn emacs() -> Outcome {
     at_hand("emacs", "emacs-nox", || starts("emacs"))?;
