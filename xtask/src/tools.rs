@@ -27,7 +27,9 @@ pub fn chromium() -> Outcome {
 pub fn node() -> Outcome {
     match starts("node") && starts("npm") {
         true => Ok(()),
-        false => Err("node and npm are needed, and are not there".into()),
+        false => {
+            Err("node and npm are needed, of Debian's packages nodejs and npm, and are not there".into())
+        }
     }
 }
 
