@@ -62,6 +62,11 @@ use writer::Writer;
 pub fn run(arguments: &Watch, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
     let targets = outputs(arguments)?;
     let outputs = paths(&targets);
+    if !arguments.quiet {
+        let written =
+            if targets.is_empty() { String::new() } else { format!(", writing {}", build::names(&targets)) };
+        terminal.line(&format!("watching {}{written}", arguments.scene.display()));
+    }
     let Started { hub, requests, desk } = start(arguments, targets, terminal, interrupt)?;
     if let Some(address) = arguments.serve {
         let editor = Editor::new(arguments.editor_url.clone(), arguments.open_with)?;
@@ -208,5 +213,6 @@ fn outputs(arguments: &Watch) -> Result<Vec<Target>, Problem> {
     }
     refuse_inputs_as_outputs(std::slice::from_ref(&arguments.scene), &paths(&targets))?;
     refuse_idle_depth(arguments.taking.look.bits, &targets)?;
+    targets.iter().try_for_each(Target::refuse_no_place)?;
     Ok(targets)
 }

@@ -201,6 +201,9 @@ impl<'a> Painting<'a> {
         let Some(change) = &self.change else { return };
         let what = listed(self.names).unwrap_or_else(|| "the text".into());
         let how = match (&change.paths, samples_kept) {
+            (Paths::Kept, true) if change.developed && change.target => {
+                "developed anew, all samples kept, going on".to_string()
+            }
             (Paths::Kept, true) if change.developed => "developed anew, no ray traced again".to_string(),
             (Paths::Kept, true) if change.target => "all samples kept, going on".to_string(),
             (Paths::Kept, true) => "the picture is the same, all samples kept".to_string(),
@@ -300,6 +303,11 @@ impl<'a> Painting<'a> {
                 let frame = self.frame(look.pixels.clone(), *step, [0, 1], shown, false);
                 self.painter.hub.show(frame);
             }
+            // These were of the picture before.
+            self.painter.hub.say(|status| {
+                (status.samples, status.seconds) = (0, start.elapsed().as_secs_f64());
+                (status.noise, status.left) = (None, None);
+            });
         }
         let film = Film::new(Window::whole(size), prepass.scale);
         let (work, time) = (Work::new(size), start.elapsed());

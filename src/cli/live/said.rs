@@ -13,8 +13,9 @@ pub fn said(diagnostics: &[Diagnostic], sources: &Sources) -> Said {
     let count = |severity| diagnostics.iter().filter(|diagnostic| diagnostic.severity() == severity).count();
     let style = Style { color: false, unicode: true, width: WIDTH };
     let text = report::all(diagnostics, sources, style);
-    let mut places: Vec<Mention> =
-        sources.iter().flat_map(|(_, source)| mentions(&text, &source.name)).collect();
+    // A setting is in no file.
+    let files = sources.iter().filter(|(_, source)| !source.name.starts_with("--set"));
+    let mut places: Vec<Mention> = files.flat_map(|(_, source)| mentions(&text, &source.name)).collect();
     places.sort_by_key(|place| place.start);
     Said { errors: count(Severity::Error), warnings: count(Severity::Warning), text, places }
 }
