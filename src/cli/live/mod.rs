@@ -72,7 +72,7 @@ pub fn run(arguments: &Watch, terminal: Terminal, interrupt: &Interrupt) -> Resu
         let editor = Editor::new(arguments.editor_url.clone(), arguments.open_with)?;
         show(hub.clone(), Wanted { address, editor }, arguments.open)?;
     }
-    let watcher = watcher(arguments, &hub)?;
+    let watcher = follow_files(arguments, &hub)?;
     let reader = Reader::new(&arguments.scene, &arguments.reading, arguments.taking.overrides(), outputs);
     Engine::new(arguments, reader, watcher, desk, hub, interrupt.clone(), terminal).run(&requests)
 }
@@ -107,7 +107,7 @@ pub fn preview(
     let Started { hub, requests, desk } = start(arguments, vec![], terminal, interrupt)?;
     let address = arguments.serve.ok_or_else(|| Problem::new("there is nothing to serve"))?;
     let url = serve::start(hub.clone(), Wanted { address, editor: Editor::told(tell) })?;
-    let watcher = watcher(arguments, &hub)?;
+    let watcher = follow_files(arguments, &hub)?;
     let reader =
         Reader::new(&arguments.scene, &arguments.reading, arguments.taking.overrides(), vec![]).by(load);
     let engine = Engine::new(arguments, reader, watcher, desk, hub.clone(), interrupt.clone(), terminal);
@@ -162,7 +162,7 @@ fn start(
 }
 
 /// Tells when files may have changed.
-fn watcher(arguments: &Watch, hub: &Arc<Hub>) -> Result<Watcher, Problem> {
+fn follow_files(arguments: &Watch, hub: &Arc<Hub>) -> Result<Watcher, Problem> {
     let told = hub.clone();
     Watcher::new(arguments.poll.map(Duration::from_millis), move || told.ask(Request::Look))
 }
