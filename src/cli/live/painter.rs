@@ -27,7 +27,8 @@ const LOOK: u32 = 8;
 const SOON: u64 = 1 << 18;
 /// Between two pictures that are shown so many times as long is traced as it takes to show one.
 const SHARE: u32 = 10;
-/// And at least so long: a page takes as long to paint one as this to trace, and is to have time for whoever uses it.
+/// And at least so long, unless somebody waits for a window: a page takes as long to paint a picture as this to trace one, and
+/// is to have time for whoever uses it.
 const CALM: Duration = Duration::from_millis(200);
 
 /// What is traced, where it is shown, and where it goes.
@@ -281,7 +282,9 @@ impl<'a> Painting<'a> {
                 written = level;
                 let frame = self.show(&mut canvas, true);
                 self.write(frame, None);
-            } else if shown.elapsed() > (SHARE * cost).max(CALM) {
+            } else if shown.elapsed()
+                > (SHARE * cost).max(if first.is_some() { Duration::ZERO } else { CALM })
+            {
                 let start = Instant::now();
                 self.show(&mut canvas, false);
                 (shown, cost) = (Instant::now(), start.elapsed());
