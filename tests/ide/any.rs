@@ -74,7 +74,8 @@ fn kinds_are_offered_with_values_that_fit() {
         let kinds = offered.iter().filter(|offer| matches!(offer.kind, CompletionKind::Kind));
         // A hole without a value is for a name or a file.
         for offer in kinds.filter(|offer| offer.insert.holes.iter().all(|hole| !hole.is_empty())) {
-            let text = format!("{before}{}{after}\n", offer.insert.text);
+            // Something to be seen by a camera.
+            let text = format!("{before}{}{after}\nsphere {{ radius: 1m }}\n", offer.insert.text);
             let analysis = analysed(&root(), "any.rt", &text);
             let errors: Vec<&str> = (analysis.diagnostics.iter())
                 .filter(|said| said.severity() == Severity::Error)

@@ -171,9 +171,12 @@ pub(super) fn doc_of(typing: &Typing, place: Span) -> String {
 /// A thing of a kind with the fields that it needs, as it is written, with holes.
 pub(super) fn made(name: &str) -> String {
     let Some(id) = crate::schema::kind(name) else { return format!("{name} {{ ‹› }}") };
-    // Values that fit each other: a camera does not look at itself.
+    // What is usual, and fits each other: a camera does not look at itself.
     let value = |field: &Field| match (id.get().name, field.name) {
         ("camera", "from") => "(‹0›, ‹1›, ‹4›)m".into(),
+        ("lens", "focal") => "‹50›mm".into(),
+        ("lens", "stop") => "‹2.8›".into(),
+        ("render", "noise") => "‹1›%".into(),
         _ => example(field),
     };
     let fields: Vec<String> =
