@@ -50,10 +50,10 @@ pub enum Question {
     Light {
         /// The file as the user names it.
         file: String,
-        /// Line and column, from 1.
+        /// Line and column, from 1; column 0 is the line's first word.
         place: [u32; 2],
-        /// Nothing where nothing stands there.
-        reply: Reply<Option<Mask>>,
+        /// The pixels, or why there are none.
+        reply: Reply<Result<Mask, String>>,
     },
 }
 

@@ -24,6 +24,9 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Instant;
 
+/// What is said where a picture is asked about before the first.
+const NO_PICTURE: &str = "there is no picture yet";
+
 /// Reads, compiles, and decides.
 pub struct Engine {
     scene: PathBuf,
@@ -137,11 +140,11 @@ impl Engine {
             }
             Request::Why { x, y, patient, reply } => match self.job {
                 Some(_) => self.desk.ask(Question::Why { pixel: [x, y], patient, reply }),
-                None => drop(reply.send(Err("there is no picture yet".into()))),
+                None => drop(reply.send(Err(NO_PICTURE.into()))),
             },
             Request::Light { file, line, column, reply } => match self.job {
                 Some(_) => self.desk.ask(Question::Light { file, place: [line, column], reply }),
-                None => drop(reply.send(None)),
+                None => drop(reply.send(Err(NO_PICTURE.into()))),
             },
         }
     }
@@ -281,7 +284,7 @@ impl Engine {
     /// Says what can be set, and of which files the scene is made.
     fn describe(&self, loaded: &Loaded) {
         let set = |name: &str| self.set.get(name);
-        let params: Vec<Param> = loaded
+        let mut params: Vec<Param> = loaded
             .compiled
             .inventory
             .params
@@ -297,10 +300,13 @@ impl Engine {
                 high: param.range.as_ref().map(|[_, high]| high.clone()),
             })
             .collect();
+        let understood = !params.is_empty() || !any_errors(&loaded.compiled.diagnostics);
+        let gone = self.gone.iter().filter_map(|name| Some((name, self.set.get(name)?)));
+        params.extend(gone.map(|(name, value)| Param::gone(name, value)));
         let files = self.reader.files().map(|path| shown(&path)).collect::<std::collections::BTreeSet<_>>();
         self.hub.say(|status| {
             // A text that could not be understood has no params; those that were are still there to be mended with.
-            if !params.is_empty() || !any_errors(&loaded.compiled.diagnostics) {
+            if understood {
                 status.params = params;
             }
             status.files = files.into_iter().collect();

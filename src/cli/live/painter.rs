@@ -3,6 +3,8 @@
 use super::answers::answer_all;
 use super::desk::{Desk, Effort, Job};
 use super::hub::{Aim, Frame, Hub, Shown, State};
+use super::mix::Mix;
+use super::said::listed;
 use super::work::{Step, Work};
 use super::writer::{Page, Writer};
 use crate::cli::build::chosen_stops;
@@ -14,8 +16,6 @@ use rt_lang::change::{self, Change, Paths};
 use rt_lang::color::Rgb;
 use rt_lang::output::Facts;
 use rt_lang::render::halt::{self, FIRST_NOISE_SAMPLES, Limit, MOST_NOISE_SAMPLES};
-use rt_lang::render::light::Source;
-use rt_lang::render::shares::Shares;
 use rt_lang::render::{Control, Film, Prepass, Structure, Tracer, Window};
 use rt_lang::scene::{Background, Scene, Target};
 use std::sync::Arc;
@@ -69,14 +69,6 @@ struct Left {
     /// Whether a mix is shown in place of a picture with few samples.
     mixing: bool,
     version: u64,
-}
-
-/// A picture that was done, and how bright its lamps have become since.
-struct Mix {
-    picture: Arc<Frame>,
-    shares: Shares,
-    /// Of each of their sources.
-    factors: Vec<Rgb>,
 }
 
 /// A picture that was mixed anew is shown until the traced one has so many samples a pixel.
@@ -228,35 +220,14 @@ impl<'a> Painting<'a> {
     fn remix(&mut self, prepass: &Prepass) {
         let was_mixing = std::mem::take(&mut self.left.mixing);
         let Some(change) = &self.change else { return };
-        let factor: Box<dyn Fn(&Source) -> Rgb> = match &change.paths {
-            Paths::Lamps(factors) => Box::new(|source| match source {
-                Source::Light(index) => factors[*index as usize],
-                Source::Primitive(id) => {
-                    let material = self.scene.primitives[id.0 as usize].material;
-                    factors[self.scene.lights.len() + material.0 as usize]
-                }
-            }),
-            Paths::Kept if was_mixing => Box::new(|_| Rgb::ONE),
-            Paths::Kept => return,
-            Paths::New => {
-                self.left.mix = None;
-                return;
-            }
-        };
-        let Some(mix) = &mut self.left.mix else { return };
-        for (sum, source) in mix.factors.iter_mut().zip(mix.shares.sources()) {
-            *sum *= factor(source);
+        match (&change.paths, &mut self.left.mix) {
+            (Paths::Lamps(factors), Some(mix)) => mix.relight(self.scene, factors),
+            (Paths::Kept, Some(_)) if was_mixing => {}
+            (Paths::New, _) => return self.left.mix = None,
+            _ => return,
         }
-        drop(factor);
-        let [width, _] = mix.picture.size;
-        let pixels = mix.picture.pixels.par_iter().enumerate().map(|(index, pixel)| {
-            let (x, y) = (index as u32 % width, index as u32 / width);
-            let [r, g, b] = mix.shares.factor(x, y, &mix.factors);
-            let [red, green, blue, _, alpha] = *pixel;
-            // How the errors of lamps hang together was not kept.
-            [red * r, green * g, blue * b, f32::INFINITY, alpha]
-        });
-        let (pixels, samples) = (pixels.collect(), mix.picture.samples);
+        let Some(mix) = &self.left.mix else { return };
+        let (pixels, samples) = (mix.pixels(), mix.picture.samples);
         let frame = self.frame(pixels, 1, samples, self.shown(prepass), true);
         self.painter.hub.show(frame);
         self.left.mixing = true;
@@ -266,11 +237,8 @@ impl<'a> Painting<'a> {
     fn learn_shares(&mut self, tracer: &Tracer, picture: &Arc<Frame>) {
         // It is cancelled too where only another window is to come first.
         while let Some(control) = self.painter.desk.begin(Effort::Long) {
-            if let Ok(shares) = tracer.shares(&control) {
-                self.left.mix = shares.map(|shares| {
-                    let factors = vec![Rgb::ONE; shares.sources().len()];
-                    Mix { picture: picture.clone(), shares, factors }
-                });
+            if let Ok(mix) = Mix::learn(tracer, picture, &control) {
+                self.left.mix = mix;
                 return;
             }
         }
@@ -515,15 +483,6 @@ impl<'a> Painting<'a> {
             writer.put(Page { frame, done });
         }
     }
-}
-
-/// What a person is told of names.
-fn listed(names: &[String]) -> Option<String> {
-    /// More than anybody reads.
-    const MOST: usize = 3;
-    let quoted: Vec<String> = names.iter().take(MOST).map(|name| format!("`{name}`")).collect();
-    let more = if names.len() > MOST { " and more" } else { "" };
-    (!quoted.is_empty()).then(|| format!("{}{more}", quoted.join(", ")))
 }
 
 /// What pixels show: their means, or where there are no samples the first look.
