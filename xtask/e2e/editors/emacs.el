@@ -1,19 +1,11 @@
 ;;; What a person does in Emacs, in batch: our mode by itself, and eglot with the built server.  -*- lexical-binding: t -*-
 ;;
-;; Usage: emacs --batch -l emacs.el RTC ROOT, in an empty folder.
+;; Usage: emacs --batch -l emacs.el, in an empty folder, with RTC and ROOT in the environment.
 
 (require 'cl-lib)
-(defvar rtc (pop command-line-args-left))
-(defvar root (pop command-line-args-left))
-(add-to-list 'load-path (expand-file-name "editors/emacs" root))
-(require 'rt-mode)
-(require 'eglot)
-(setq rt-program rtc
-      eglot-sync-connect t
-      eglot-autoshutdown nil
-      eglot-confirm-server-initiated-edits nil
-      backup-inhibited t
-      create-lockfiles nil)
+(load (expand-file-name "init" (file-name-directory load-file-name)) nil t)
+(defvar root (getenv "ROOT"))
+(setq eglot-sync-connect t)
 
 (defconst scene "// A ball on a floor.
 param size: length = 50cm in 10cm to 1m

@@ -1,13 +1,14 @@
-"""A picture of Neovim in a terminal: colours by tree-sitter, and a message about a slip.
+"""A picture of an editor in a terminal, with colours and a message about a slip.
 
-Usage: screen.py NVIM ROOT INIT OUT, in an empty folder, by a Python with pyte. OUT is a page of HTML, which a browser
-makes a picture of.
+Usage: screen.py OUT PROGRAM [ARGUMENT…], in an empty folder, by a Python with pyte. The program is given `shown.rt`
+besides. OUT is a page of HTML, which a browser makes a picture of.
 """
 
 import html
 import os
 import pty
 import select
+import signal
 import struct
 import sys
 import termios
@@ -43,6 +44,10 @@ light { at: (-20, 40, 25)cm, power: 15W, color: blackbody(3200K) }
 camera { from: (0, 9, 26)cm, look: ball }
 """
 
+# What the message says. The editor is to show it within so many seconds, and then to be still for some.
+MESSAGE = "wants a length"
+PATIENCE, STILL = 60, 1.5
+
 # What a terminal without a theme shows.
 NAMED = {
     "black": "#000000", "red": "#cd3131", "green": "#0dbc79", "brown": "#e5e510", "blue": "#2472c8",
@@ -75,36 +80,45 @@ def page(screen):
     return f'<!doctype html><meta charset="utf-8"><style>body{{margin:0;background:#14161b}}pre{{font:14px/1.3 "DejaVu Sans Mono",monospace;margin:8px}}</style><pre>{body}</pre>\n'
 
 
+class Screen(pyte.Screen):
+    """Of what Vim asks a terminal for (CSI ? 4 m), pyte makes a colour, and stumbles."""
+
+    def select_graphic_rendition(self, *attributes, private=False):
+        if not private:
+            super().select_graphic_rendition(*attributes)
+
+
+def shows(screen):
+    return any(MESSAGE in line for line in screen.display)
+
+
 def main():
-    nvim, root, init, out = sys.argv[1:]
+    out, *command = sys.argv[1:]
     with open("shown.rt", "w", encoding="utf-8") as file:
         file.write(SCENE)
     child, terminal = pty.fork()
     if child == 0:
-        environment = dict(os.environ, TERM="xterm-256color", COLORTERM="truecolor", ROOT=root)
-        commands = ["set termguicolors number signcolumn=yes wrap", "colorscheme habamax", "lua vim.diagnostic.config({ virtual_lines = true })"]
-        os.execve(nvim, [nvim, "-u", init, *[part for c in commands for part in ("-c", c)], "shown.rt"], environment)
+        os.execvpe(command[0], [*command, "shown.rt"], dict(os.environ, TERM="xterm-256color", COLORTERM="truecolor"))
     ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", LINES, COLUMNS, 0, 0))
-    screen = pyte.Screen(COLUMNS, LINES)
+    screen = Screen(COLUMNS, LINES)
     stream = pyte.ByteStream(screen)
-    end = time.time() + 30
+    end = time.time() + PATIENCE
     while time.time() < end:
-        ready, _, _ = select.select([terminal], [], [], 0.5)
-        if ready:
-            try:
-                stream.feed(os.read(terminal, 1 << 16))
-            except OSError:
-                break
-        elif any("wants a length" in line for line in screen.display):
+        ready, _, _ = select.select([terminal], [], [], STILL)
+        if not ready and shows(screen):
             break
-    told = any("wants a length" in line for line in screen.display)
-    colours = {screen.buffer[row][column].fg for row in range(LINES) for column in range(COLUMNS)}
+        try:
+            stream.feed(os.read(terminal, 1 << 16) if ready else b"")
+        except OSError:
+            break
+    os.kill(child, signal.SIGHUP)
+    os.close(terminal)
+    os.waitpid(child, 0)
     with open(out, "w", encoding="utf-8") as file:
         file.write(page(screen))
-    os.write(terminal, b"\x1b:qall!\r")
-    os.waitpid(child, 0)
-    if not told:
+    if not shows(screen):
         sys.exit("the screen shows no message:\n" + "\n".join(screen.display))
+    colours = {screen.buffer[row][column].fg for row in range(LINES) for column in range(COLUMNS)}
     if len(colours) < 5:
         sys.exit(f"the screen has the colours {colours} alone")
 
