@@ -1,7 +1,7 @@
 //! What is said of documents, to the client.
 
 use super::analyst::{Meaning, uri};
-use super::documents::{Key, MOST_TEXT};
+use super::documents::{Kept, Key, MOST_TEXT};
 use super::view::View;
 use gen_lsp_types as lsp;
 use rt_lang::diagnostic::{Code, Diagnostic, Severity};
@@ -11,26 +11,54 @@ use std::collections::{BTreeMap, BTreeSet};
 const MOST: usize = 1_000;
 
 /// What is said of each file of an analysis; of the document itself also where it is nothing.
-pub type Found = BTreeMap<Key, Vec<lsp::Diagnostic>>;
+pub type Found = BTreeMap<Key, Said>;
+
+/// What is said of a file.
+#[derive(Debug)]
+pub struct Said {
+    /// When its text was edited of which it is said; none where it was read as it is saved.
+    edited: Option<u64>,
+    all: Vec<lsp::Diagnostic>,
+}
+
+impl Said {
+    /// Nothing yet.
+    fn new(view: &View, key: &Key) -> Said {
+        Said { edited: edited(view, key), all: vec![] }
+    }
+}
+
+/// When a file was edited last, if it is open.
+fn edited(view: &View, key: &Key) -> Option<u64> {
+    view.documents.get(key).map(|document| document.edited)
+}
 
 /// What an analysis says of each file.
 pub fn found(meaning: &Meaning, key: &Key, view: &View) -> Found {
-    let mut found = Found::from([(key.clone(), vec![])]);
-    if view.documents.get(key).is_some_and(|document| document.is_too_long) {
-        return Found::from([(key.clone(), vec![too_long()])]);
+    let mut own = Said::new(view, key);
+    let unknown = match view.documents.get(key).map(|document| document.kept) {
+        None | Some(Kept::Whole) => None,
+        Some(Kept::TooLong) => Some(too_long()),
+        Some(Kept::Lost) => Some(lost()),
+    };
+    let is_known = unknown.is_none();
+    own.all.extend(unknown);
+    let mut found = Found::from([(key.clone(), own)]);
+    if !is_known {
+        return found;
     }
     let mut more: BTreeMap<Key, usize> = BTreeMap::new();
     for diagnostic in &meaning.analysis.diagnostics {
         let file = meaning.key(diagnostic.primary.span.source);
-        let said: &mut Vec<_> = found.entry(file.clone()).or_default();
-        if said.len() < MOST {
-            said.push(convert(diagnostic, meaning, view));
+        let said = found.entry(file.clone()).or_insert_with(|| Said::new(view, &file));
+        if said.all.len() < MOST {
+            said.all.push(convert(diagnostic, meaning, view));
         } else {
             *more.entry(file).or_default() += 1;
         }
     }
     for (file, count) in more {
-        found.entry(file).or_default().push(further(count));
+        found.entry(file).and_modify(|said| said.all.push(further(count)));
     }
     found
 }
@@ -42,9 +70,20 @@ fn too_long() -> lsp::Diagnostic {
         code: Some(lsp::Code::String(Code::E0406.as_str().into())),
         source: Some("rtc".into()),
         message: lsp::Message::String(format!(
-            "a document has at most {} MiB, this is longer",
+            "a document has at most {} MiB, this is longer\nhelp: where it was made shorter, close it and open it again",
             MOST_TEXT >> 20
         )),
+        ..lsp::Diagnostic::default()
+    }
+}
+
+/// Says that nobody knows what stands in a document.
+fn lost() -> lsp::Diagnostic {
+    let message = "the editor has told of an edit that makes no sense: close this document and open it again";
+    lsp::Diagnostic {
+        severity: Some(lsp::DiagnosticSeverity::Error),
+        source: Some("rtc".into()),
+        message: lsp::Message::String(message.into()),
         ..lsp::Diagnostic::default()
     }
 }
@@ -123,11 +162,17 @@ impl Board {
         found.into_keys().filter_map(|file| self.news(file, view)).collect()
     }
 
-    /// All that is said of a file: by its own analysis first, since what others say of it is mostly the same.
-    fn all(&self, file: &Key) -> Vec<lsp::Diagnostic> {
+    /// All that is said of a file as it is now: by its own analysis first, since what others say of it is mostly the same. None
+    /// where it is open and was not looked at as it is now.
+    fn all(&self, file: &Key, view: &View) -> Option<Vec<lsp::Diagnostic>> {
+        let edited = edited(view, file);
+        let is_current = |found: &&Found| found.get(file).is_some_and(|said| said.edited == edited);
+        if edited.is_some() && !self.by_document.get(file).is_some_and(|found| is_current(&found)) {
+            return None;
+        }
         let own = self.by_document.get(file).into_iter();
         let others = self.by_document.iter().filter(|(key, _)| *key != file).map(|(_, found)| found);
-        let said = own.chain(others).filter_map(|found| found.get(file)).flatten();
+        let said = own.chain(others).filter(is_current).filter_map(|found| found.get(file));
         let mut seen = BTreeSet::new();
         let place = |range: lsp::Range| {
             [range.start.line, range.start.character, range.end.line, range.end.character]
@@ -135,12 +180,12 @@ impl Board {
         let is_new = |diagnostic: &&lsp::Diagnostic| {
             seen.insert((place(diagnostic.range), format!("{:?}", diagnostic.message)))
         };
-        said.filter(is_new).cloned().collect()
+        Some(said.flat_map(|said| &said.all).filter(is_new).cloned().collect())
     }
 
     /// What is to be told of a file, if that is not what was told.
     fn news(&mut self, file: Key, view: &View) -> Option<lsp::PublishDiagnosticsParams> {
-        let all = self.all(&file);
+        let all = self.all(&file, view)?;
         let version = view.documents.get(&file).map(|document| document.version);
         let told = self.told.get(&file);
         let nothing_new = match told {

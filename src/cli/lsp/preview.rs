@@ -110,7 +110,8 @@ fn load(newest: &Newest, key: &Key, reading: &Reading, overrides: &Overrides) ->
     let view = lock(newest).clone();
     let Some(path) = key.path() else { return Err(Problem::new("this has no place on the disk")) };
     let own = path.parent().unwrap_or(Path::new("/"));
-    let root = view.session.root.as_deref().filter(|root| path.starts_with(root)).unwrap_or(own);
+    let root = view.root_of(path);
+    let root = root.as_deref().unwrap_or(own);
     let Some(document) = view.documents.get(key) else {
         return scene::load(path, &Reading { root: Some(root.into()), ..reading.clone() }, overrides);
     };

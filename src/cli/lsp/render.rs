@@ -28,7 +28,10 @@ const TOKEN: &str = "rtc.render ";
 
 /// Makes it, and says where it is.
 pub fn render(order: &Order) -> Answer<Value> {
-    let Order { view, key, about, interrupt, .. } = order;
+    let Order { view, key, about, interrupt, cancelled, .. } = order;
+    if cancelled.load(Ordering::Relaxed) {
+        return Err(Failure::cancelled());
+    }
     let path = key.path().ok_or_else(|| Failure::plain("save it first: its picture goes beside it"))?;
     let target = Target::beside(path);
     let world = World::around(view, key);

@@ -3,9 +3,9 @@
 
 use super::capabilities::{initialized, watched};
 use super::client::{Client, encoding};
-use super::commands::{self, Order};
+use super::commands::{self, Order, Renders};
 use super::diagnostics::Board;
-use super::documents::{Documents, Key};
+use super::documents::{Changed, Documents, Key};
 use super::pages::Pages;
 use super::preview::{self, Previews};
 use super::reads::Reads;
@@ -56,6 +56,7 @@ pub struct Server {
     tell: Sender<Told>,
     interrupt: Interrupt,
     previews: Previews,
+    renders: Renders,
     /// Tells of files that change, where the client does not.
     watcher: Option<Watcher>,
     /// What waits for an answer, each with what says that none is wanted.
@@ -73,7 +74,7 @@ impl Server {
     /// Where the system gives no more threads.
     pub fn new(connection: Connection, root: Option<PathBuf>, interrupt: Interrupt) -> io::Result<Server> {
         let (tell, told) = bounded(QUEUE);
-        let (client, pages) = (Client::default(), Pages::default());
+        let (client, pages) = (Client::default(), Pages::new(interrupt.clone()));
         let (encoding, memory) = (encoding(&Value::Null), Arc::default());
         let session = Session { client, encoding, root, pages, memory };
         let view = View { session: Arc::new(session), documents: Documents::default(), folders: vec![] };
@@ -82,6 +83,7 @@ impl Server {
             connection,
             life: Life::New,
             previews: Previews::new(view.clone()),
+            renders: Renders::default(),
             view,
             watcher: None,
             desk: Desk::start(&tell)?,
@@ -114,8 +116,8 @@ impl Server {
                 },
             }
         }
-        // Others may hold what was known, and with it the pages, until the process ends.
-        self.view.session.pages.tidy();
+        // Others may be at work until the process ends.
+        self.interrupt.close();
         // The protocol's codes: 1 for an end that was not announced.
         if self.life == Life::Ending { Exit::Done } else { Exit::Diagnostics }
     }
@@ -206,7 +208,12 @@ impl Server {
         let order = Order { id, key: Key::of(&about.uri), about, view, cancelled, told, interrupt };
         match command.as_str() {
             commands::PREVIEW => self.preview(&order),
-            _ => commands::render(order),
+            _ => {
+                if let Some(before) = self.renders.start(order)? {
+                    self.cancel(before);
+                }
+                Ok(())
+            }
         }
     }
 
@@ -233,6 +240,7 @@ impl Server {
     fn finish(&mut self, id: RequestId, answer: Answer<Value>) {
         if self.waiting.incoming.complete(&id).is_some() {
             self.count -= 1;
+            self.renders.forget(&id);
             self.send(id, answer);
         }
     }
@@ -251,7 +259,7 @@ impl Server {
             client: Client::read(params),
             encoding: encoding(params),
             root: view.session.root.clone(),
-            pages: Pages::default(),
+            pages: Pages::new(self.interrupt.clone()),
             memory: Arc::default(),
         });
         serde_json::to_value(initialized(view.session.encoding))
@@ -282,11 +290,11 @@ impl Server {
                 self.changed_at(vec![key]);
             }
             Method::TextDocumentDidChange => {
-                let lsp::DidChangeTextDocumentParams { text_document, content_changes } = read(params)?;
-                let key = Key::of(&text_document.text_document_identifier.uri);
+                let changed: Changed = read(params)?;
+                let key = Key::of(&changed.text_document.text_document_identifier.uri);
                 let view = Arc::make_mut(&mut self.view);
                 let encoding = view.session.encoding;
-                view.documents.change(&key, text_document.version, content_changes, encoding);
+                view.documents.change(&key, changed, encoding);
                 self.changed_at(vec![key]);
             }
             Method::TextDocumentDidClose => {
@@ -317,6 +325,7 @@ impl Server {
         if let Some(cancelled) = self.waiting.incoming.complete(&id) {
             cancelled.store(true, Ordering::Relaxed);
             self.count -= 1;
+            self.renders.forget(&id);
             self.send(id, Err(Failure::cancelled()));
         }
     }
@@ -478,3 +487,6 @@ impl Server {
         let _ = self.connection.sender.send(response.into());
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -24,8 +24,13 @@ pub struct Client<'d> {
 impl<'d> Client<'d> {
     /// Starts the server, and says nothing yet.
     pub fn silent(desk: &'d Desk) -> Client<'d> {
+        Client::started(desk, "lsp")
+    }
+
+    /// Starts it with arguments.
+    pub fn started(desk: &'d Desk, arguments: &str) -> Client<'d> {
         let mut child = desk
-            .command("lsp")
+            .command(arguments)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::inherit())
@@ -46,12 +51,16 @@ impl<'d> Client<'d> {
 
     /// Starts it, and agrees on what both can do.
     pub fn with(desk: &'d Desk, capabilities: Value) -> Client<'d> {
-        let mut client = Client::silent(desk);
+        let client = Client::silent(desk);
         let folder = json!({ "uri": client.uri(""), "name": "desk" });
-        let params = json!({ "processId": null, "rootUri": null, "capabilities": capabilities, "workspaceFolders": [folder] });
-        client.ask("initialize", params).unwrap();
-        client.tell("initialized", json!({}));
-        client
+        client.agreed(json!({ "capabilities": capabilities, "workspaceFolders": [folder] }))
+    }
+
+    /// Agrees on what both can do, and where.
+    pub fn agreed(mut self, params: Value) -> Client<'d> {
+        self.ask("initialize", params).unwrap();
+        self.tell("initialized", json!({}));
+        self
     }
 
     /// One that can do what most can.
@@ -183,6 +192,19 @@ impl<'d> Client<'d> {
         assert_eq!(self.ask("shutdown", Value::Null), Ok(Value::Null));
         self.tell("exit", Value::Null);
         self.code()
+    }
+
+    /// Has the system end it.
+    #[cfg(unix)]
+    pub fn terminate(&mut self) {
+        let pid = self.child.id().to_string();
+        assert!(std::process::Command::new("kill").args(["-TERM", &pid]).status().unwrap().success());
+    }
+
+    /// What of what has come is so.
+    pub fn has(&mut self, wanted: impl Fn(&Value) -> bool) -> bool {
+        self.kept.extend(self.messages.try_iter());
+        self.kept.iter().any(wanted)
     }
 
     /// Sends nothing any more.

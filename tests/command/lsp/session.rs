@@ -1,7 +1,7 @@
 //! What an editor asks, and what it is told.
 
 use super::super::Desk;
-use super::client::Client;
+use super::client::{Client, PATIENCE};
 use serde_json::{Value, json};
 
 const SCENE: &str = "\
@@ -58,6 +58,11 @@ fn imports_are_read_from_open_documents_first() {
     client.open("woods.rt", "material oak = diffuse { color: 8mm }\n");
     assert_eq!(client.codes("woods.rt", Some(1)), ["E0205"]);
     client.replace("woods.rt", 2, "material elm = diffuse { color: #705848 }\n");
+    assert_eq!(
+        client.codes("woods.rt", Some(2)),
+        Vec::<String>::new(),
+        "what was found in the first text is no more so"
+    );
     assert_eq!(client.codes("scene.rt", Some(1)), ["E0101"]);
     client.replace("woods.rt", 3, "material oak = diffuse { color: #705848 }\n");
     assert_eq!(client.codes("scene.rt", Some(1)), Vec::<String>::new());
@@ -133,6 +138,31 @@ fn what_is_shown_in_texts_that_read_an_edited_one_is_asked_for_again() {
 }
 
 #[test]
+fn an_edit_that_makes_no_sense_leaves_no_wrong_text() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    let woods = "material oak = diffuse { color: #705848 }\n";
+    client.open("woods.rt", woods);
+    client.open("scene.rt", "import \"woods.rt\" as woods\nsphere { radius: 1m, material: woods.oak }\n");
+    assert_eq!(client.codes("scene.rt", Some(1)), Vec::<String>::new());
+    let at = json!({ "line": -1, "character": 0 });
+    client.change("woods.rt", 2, json!([{ "range": { "start": at, "end": at }, "text": "x" }]));
+    let said = client.diagnostics("woods.rt", Some(2));
+    assert!(
+        said[0]["message"].as_str().unwrap().ends_with("close this document and open it again"),
+        "{said:?}"
+    );
+    assert_eq!(client.codes("scene.rt", Some(1)), ["E0501"]);
+    let mut params = document(&client, "woods.rt");
+    params["options"] = json!({ "tabSize": 2, "insertSpaces": true });
+    client.ask("textDocument/formatting", params).unwrap_err();
+    client.replace("woods.rt", 3, woods);
+    assert_eq!(client.codes("woods.rt", Some(3)), Vec::<String>::new());
+    assert_eq!(client.codes("scene.rt", Some(1)), Vec::<String>::new());
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
 fn a_document_that_was_never_saved_is_understood() {
     let desk = Desk::new();
     let mut client = Client::new(&desk);
@@ -196,6 +226,96 @@ fn a_picture_does_not_replace_what_its_scene_reads() {
     assert!(refused["message"].as_str().unwrap().ends_with("would be replaced by the picture"), "{refused}");
     assert_eq!(desk.get("room.png"), made);
     assert_eq!(client.end(), Some(0));
+}
+
+/// A scene whose picture is never done.
+const ENDLESS: &str = "sphere { radius: 1m }\nrender { size: (320, 240), samples: 1000000 }\n";
+
+/// Asks for the picture of a document.
+fn render(client: &mut Client, name: &str) -> i32 {
+    let arguments = json!([client.uri(name)]);
+    client.begin("workspace/executeCommand", json!({ "command": "rtc.render", "arguments": arguments }))
+}
+
+fn begins(message: &Value) -> bool {
+    message["params"]["value"]["kind"] == "begin"
+}
+
+#[test]
+fn pictures_are_made_one_after_the_other_and_of_a_document_one() {
+    let desk = Desk::new();
+    let mut client = Client::with(&desk, json!({ "window": { "workDoneProgress": true } }));
+    client.open("a.rt", ENDLESS);
+    client.open("b.rt", ENDLESS);
+    let first = render(&mut client, "a.rt");
+    client.wait("progress", begins);
+    let other = render(&mut client, "b.rt");
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    assert!(!client.has(begins), "two are made at once");
+    let second = render(&mut client, "a.rt");
+    assert_eq!(client.answer(&json!(first)).unwrap_err()["code"], -32800);
+    client.wait("progress", begins);
+    client.tell("$/cancelRequest", json!({ "id": other }));
+    assert_eq!(client.answer(&json!(other)).unwrap_err()["code"], -32800);
+    client.wait("progress", begins);
+    client.tell("$/cancelRequest", json!({ "id": second }));
+    assert_eq!(client.answer(&json!(second)).unwrap_err()["code"], -32800);
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn nothing_is_left_lying_about_at_the_end() {
+    let desk = Desk::new();
+    let mut client = Client::with(&desk, json!({ "window": { "workDoneProgress": true } }));
+    client.open("a.rt", ENDLESS);
+    render(&mut client, "a.rt");
+    client.wait("progress", begins);
+    let is_begun = |name: &String| name.ends_with(".tmp");
+    let start = std::time::Instant::now();
+    while !desk.names().iter().any(is_begun) {
+        assert!(start.elapsed() < PATIENCE, "{:?}", desk.names());
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    assert_eq!(client.end(), Some(0));
+    assert_eq!(desk.names(), ["ball.rt"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn pages_are_removed_where_the_system_ends_the_server() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    client.open("a.rt", "sphere { radius: 8deg }\n");
+    let said = client.diagnostics("a.rt", Some(1));
+    let page = said[0]["codeDescription"]["href"].as_str().unwrap().strip_prefix("file://").unwrap();
+    let folder = std::path::Path::new(page).parent().unwrap();
+    assert!(folder.exists());
+    client.terminate();
+    client.code();
+    assert!(!folder.exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_root_may_be_named_through_a_link() {
+    let desk = Desk::new();
+    for folder in ["real", "real/rooms", "real/common"] {
+        std::fs::create_dir(desk.path(folder)).unwrap();
+    }
+    std::os::unix::fs::symlink(desk.path("real"), desk.path("link")).unwrap();
+    desk.put("real/common/woods.rt", "material oak = diffuse { color: #705848 }\n");
+    let scene = "import \"../common/woods.rt\" as woods\nsphere { radius: 1m, material: woods.oak }\n";
+    for (root, folder) in [("link", "link"), ("real", "link"), ("link", "real"), ("real", "real")] {
+        let mut client =
+            Client::started(&desk, &format!("lsp --root {root}")).agreed(json!({ "capabilities": {} }));
+        // As the client writes it, and not where links lead.
+        let uri = format!("file://{}", desk.path(folder).join("rooms/scene.rt").display());
+        let item = json!({ "uri": uri, "languageId": "rt", "version": 1, "text": scene });
+        client.tell("textDocument/didOpen", json!({ "textDocument": item }));
+        let said = client.wait("diagnostics", |message| message["params"]["uri"] == *uri);
+        assert_eq!(said["params"]["diagnostics"], json!([]), "{root} {folder}");
+        assert_eq!(client.end(), Some(0));
+    }
 }
 
 #[test]
