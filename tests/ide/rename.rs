@@ -61,7 +61,7 @@ fn scenes() -> Vec<PathBuf> {
 
 #[test]
 fn a_renamed_scene_is_the_same() {
-    let mut renamed = 0;
+    let (mut renamed, mut refused) = (0, 0);
     for path in scenes() {
         let folder = Folder::of(&path);
         let text = std::fs::read_to_string(&path).unwrap();
@@ -73,20 +73,36 @@ fn a_renamed_scene_is_the_same() {
             continue;
         }
         let analysis = analyse(&folder, source.clone(), &Options::default(), &|| false).unwrap();
+        let named = |at: usize| match analysis.renamable(at) {
+            Some(Ok(span)) => Some(analysis.sources.text(span).to_string()),
+            _ => None,
+        };
+        let tokens = analysis.tokens(0..text.len());
+        let names: BTreeSet<String> =
+            tokens.iter().filter_map(|token| named(token.span.range().start)).collect();
         let mut seen = BTreeSet::new();
-        for token in analysis.tokens(0..text.len()) {
+        for token in tokens {
             let at = token.span.range().start;
-            let Some(Ok(_)) = analysis.renamable(at) else { continue };
+            let Some(name_here) = named(at) else { continue };
             let edits = ide::rename(&[], &analysis, at, "another_name").unwrap();
             if !seen.insert(edits.clone()) {
                 continue;
             }
-            let texts = apply(&folder, &source, &edits);
-            let edited = Edited { folder: &folder, texts };
-            let again = meaning(&edited, &name, &edited.texts[&name]);
-            assert_eq!(again, (hash, codes.clone()), "{}: {:?}", path.display(), edits);
-            renamed += 1;
+            // A name that is in use is refused, or means nothing else there.
+            let taken = names.range(format!("{name_here}\0")..).next().or(names.first()).unwrap();
+            let taken = match *taken == name_here {
+                true => None,
+                false => Some(ide::rename(&[], &analysis, at, taken)),
+            };
+            refused += usize::from(matches!(taken, Some(Err(_))));
+            for edits in std::iter::once(edits).chain(taken.and_then(Result::ok)) {
+                let texts = apply(&folder, &source, &edits);
+                let edited = Edited { folder: &folder, texts };
+                let again = meaning(&edited, &name, &edited.texts[&name]);
+                assert_eq!(again, (hash, codes.clone()), "{}: {:?}", path.display(), edits);
+                renamed += 1;
+            }
         }
     }
-    assert!(renamed > 60, "{renamed} names were changed");
+    assert!(renamed > 60 && refused > 20, "{renamed} names were changed, {refused} refused");
 }

@@ -11,7 +11,9 @@ param size: length = 50cm in 10cm to 1m
 material paint = diffuse { color: #d94f30 }
 sphere ball { at: (0, size, 0), radius: size, material: paint }
 plane {}
-light { at: (2, 3, 2)m, power: 60W }
+light {
+  at: (2, 3, 2)m, power: 60W
+}
 camera { from: (0, 1, 4)m, look: ball }
 ]]
 
@@ -204,10 +206,11 @@ step('symbols, tokens, colours, folds and hints are there', function()
   check(#request('textDocument/documentSymbol', document) >= 5, 'the things of the file are listed')
   check(#request('textDocument/semanticTokens/full', document).data > 50, 'words have their kinds')
   check(#request('textDocument/documentColor', document) == 1, 'the colour is seen')
-  check(#request('textDocument/foldingRange', document) >= 0, 'folds are answered')
+  check(#request('textDocument/foldingRange', document) >= 1, 'something can be folded')
   check(#request('textDocument/codeLens', document) >= 1, 'something is offered above the camera')
   local all = { start = { line = 0, character = 0 }, ['end'] = { line = 9, character = 0 } }
-  request('textDocument/inlayHint', vim.tbl_extend('error', document, { range = all }))
+  local hints = request('textDocument/inlayHint', vim.tbl_extend('error', document, { range = all }))
+  check(#hints >= 1 and hints[1].label:find('50, 0)cm', 1, true), 'what the centre comes to is said')
 end)
 
 step('the live preview serves the text, saved or not', function()
