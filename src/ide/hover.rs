@@ -228,7 +228,8 @@ pub(super) fn kind_doc(kind: KindId) -> String {
     let common = match kind.get().category {
         Category::Shape | Category::Group => {
             let names: Vec<String> = PLACED.iter().map(|field| format!("`{}`", field.name)).collect();
-            format!("\n- and {}", names.join(", "))
+            let and = if fields.is_empty() { "- " } else { "\n- and " };
+            format!("{and}{}", names.join(", "))
         }
         _ => String::new(),
     };

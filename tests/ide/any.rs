@@ -3,8 +3,11 @@
 use super::{analysed, root};
 use crate::fuzz::texts;
 use proptest::prelude::*;
+use rt_lang::diagnostic::Severity;
 use rt_lang::eval::Limits;
-use rt_lang::ide::{self, Symbol};
+use rt_lang::files::FilePath;
+use rt_lang::ide::{self, CompletionKind, Symbol};
+use rt_lang::source::Source;
 use rt_lang::span::Span;
 
 /// Asks everything there is at a byte.
@@ -59,6 +62,40 @@ fn places(symbols: &[Symbol]) -> Vec<(&str, Span, Span, bool)> {
         [vec![own], places(&symbol.children)].concat()
     });
     within.collect()
+}
+
+/// What is offered for a kind is a scene as it is, but for what only its writer knows.
+#[test]
+fn kinds_are_offered_with_values_that_fit() {
+    let mut tried = 0;
+    for (before, after) in [("", ""), ("sphere { radius: 1m, material: ", " }"), ("camera { ", " }")] {
+        let source = Source::new("any.rt", format!("{before}{after}")).at(FilePath::root("any.rt"));
+        let offered = ide::complete(&root(), &source, before.len(), &Limits::default(), &|| false);
+        let kinds = offered.iter().filter(|offer| matches!(offer.kind, CompletionKind::Kind));
+        // A hole without a value is for a name or a file.
+        for offer in kinds.filter(|offer| offer.insert.holes.iter().all(|hole| !hole.is_empty())) {
+            let text = format!("{before}{}{after}\n", offer.insert.text);
+            let analysis = analysed(&root(), "any.rt", &text);
+            let errors: Vec<&str> = (analysis.diagnostics.iter())
+                .filter(|said| said.severity() == Severity::Error)
+                .map(|said| &*said.message)
+                .collect();
+            assert!(errors.is_empty(), "{text}{errors:?}");
+            tried += 1;
+        }
+    }
+    assert!(tried > 15, "{tried}");
+}
+
+/// A value that is made of itself would be a cycle.
+#[test]
+fn a_name_is_not_offered_where_it_is_declared() {
+    for begun in ["let b = 1m\nlet a = ", "let b = 1m\nfor a in ", "let b = 1m\nparam a: length = "] {
+        let source = Source::new("any.rt", begun).at(FilePath::root("any.rt"));
+        let offered = ide::complete(&root(), &source, begun.len(), &Limits::default(), &|| false);
+        let has = |label: &str| offered.iter().any(|offer| offer.label == label);
+        assert!(has("b") && !has("a"), "{begun}");
+    }
 }
 
 /// Every few bytes of the cases, as if they were being typed.

@@ -91,7 +91,8 @@ pub fn convert(diagnostic: &Diagnostic, meaning: &Meaning, view: &View) -> lsp::
 /// The message, what is said of the place, and the help, each on a line.
 fn words(diagnostic: &Diagnostic) -> String {
     let mut words = diagnostic.message.clone();
-    if !diagnostic.primary.text.is_empty() {
+    // Said once is enough.
+    if !diagnostic.message.contains(&*diagnostic.primary.text) {
         words.push_str(&format!(": {}", diagnostic.primary.text));
     }
     if let Some(help) = &diagnostic.help {

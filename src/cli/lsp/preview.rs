@@ -23,6 +23,12 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
+/// The most previews that are served at once: each has threads of its own.
+const MOST: usize = 16;
+
+/// Has the client show something.
+pub const SHOW: lsp::LspRequestMethod<'static> = lsp::LspRequestMethod::WindowShowDocument;
+
 /// What is open now, for previews that read it on their own threads.
 pub type Newest = Arc<Mutex<Arc<View>>>;
 
@@ -46,6 +52,9 @@ impl Previews {
         let served = (key.clone(), about.camera.clone());
         if let Some(live) = self.served.get(&served) {
             return Ok(live.url.clone());
+        }
+        if self.served.len() >= MOST {
+            return Err(Failure::plain(format!("{MOST} previews are served already")));
         }
         *lock(&self.newest) = view.clone();
         let wrong = |problem: Problem| Failure::plain(problem.message);
@@ -139,20 +148,16 @@ fn show(newest: &Newest, told: &Sender<Told>, opened: &Opened) {
         take_focus: Some(true),
         selection: Some(lsp::Range { start: position, end: position }),
     };
-    let method = lsp::LspRequestMethod::WindowShowDocument.as_str().to_string();
-    let _ = told.send(Told::Asks(method, json!(params)));
+    let _ = told.send(Told::Asks(SHOW.as_str().into(), json!(params)));
 }
 
-/// Asks the client to open a page, or the browser itself where it cannot.
-pub fn browse(url: &str, view: &View, told: &Sender<Told>) -> Answer<Value> {
+/// What asks the client to open a page; where it cannot, the browser itself is told to.
+pub fn browse(url: &str, view: &View) -> Answer<Option<Value>> {
     if view.session.client.shows {
-        let method = lsp::LspRequestMethod::WindowShowDocument.as_str().to_string();
-        let _ = told.send(Told::Asks(method, json!({ "uri": url, "external": true })));
-    } else {
-        let problem = |_| Failure::plain(format!("no browser opens: open {url} yourself"));
-        open::that_detached(url).map_err(problem)?;
+        return Ok(Some(json!({ "uri": url, "external": true })));
     }
-    Ok(json!({ "url": url }))
+    let problem = |_| Failure::plain(format!("no browser opens: open {url} yourself"));
+    open::that_detached(url).map(|()| None).map_err(problem)
 }
 
 /// What is there is replaced as a whole.

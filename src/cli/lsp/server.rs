@@ -1,17 +1,19 @@
 //! What a message leads to. The one thread that knows all documents never works for long: whatever takes time is done by
 //! others, with the documents as they were.
 
-use super::capabilities::initialized;
+use super::capabilities::{initialized, watched};
 use super::client::{Client, encoding};
 use super::commands::{self, Order};
 use super::diagnostics::Board;
 use super::documents::{Documents, Key};
 use super::pages::Pages;
 use super::preview::{self, Previews};
+use super::reads::Reads;
+use super::render;
 use super::requests::{self, read};
 use super::uri::path_of;
 use super::view::{Session, View};
-use super::work::{Answer, Desk, Failure, Question, Told};
+use super::work::{Answer, Desk, Failure, Question, Told, guarded};
 use crate::cli::Exit;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::live::watcher::Watcher;
@@ -19,8 +21,7 @@ use crossbeam_channel::{Receiver, Sender, bounded, select};
 use gen_lsp_types as lsp;
 use lsp::LspNotificationMethod as Method;
 use lsp_server::{Connection, ErrorCode, Message, Notification, ReqQueue, Request, RequestId, Response};
-use serde_json::Value;
-use std::collections::{BTreeMap, BTreeSet};
+use serde_json::{Value, json};
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -61,10 +62,7 @@ pub struct Server {
     waiting: ReqQueue<Arc<AtomicBool>, ()>,
     count: usize,
     board: Board,
-    /// What each open document is made of, as far as that is known.
-    reads: BTreeMap<Key, BTreeSet<Key>>,
-    /// When files changed last, as documents are stamped.
-    changed: BTreeMap<Key, u64>,
+    reads: Reads,
 }
 
 impl Server {
@@ -93,8 +91,7 @@ impl Server {
             waiting: ReqQueue::default(),
             count: 0,
             board: Board::default(),
-            reads: BTreeMap::new(),
-            changed: BTreeMap::new(),
+            reads: Reads::default(),
         })
     }
 
@@ -109,7 +106,10 @@ impl Server {
                     Err(_) => break,
                 },
                 recv(told) -> told => match told {
-                    Ok(told) => self.hear(told),
+                    Ok(told) => {
+                        // What goes wrong here is reported, and the server lives.
+                        let _ = guarded(|| self.hear(told));
+                    }
                     Err(_) => break,
                 },
             }
@@ -120,7 +120,21 @@ impl Server {
         if self.life == Life::Ending { Exit::Done } else { Exit::Diagnostics }
     }
 
+    /// Takes a message in. Where that panics, whoever asked is answered, and the server lives.
     fn take(&mut self, message: Message) {
+        let id = match &message {
+            Message::Request(request) => Some(request.id.clone()),
+            _ => None,
+        };
+        if let (Err(failure), Some(id)) = (guarded(|| self.do_what_it_says(message)), id) {
+            match self.waiting.incoming.is_completed(&id) {
+                true => self.send(id, Err(failure)),
+                false => self.finish(id, Err(failure)),
+            }
+        }
+    }
+
+    fn do_what_it_says(&mut self, message: Message) {
         match message {
             Message::Request(request) => self.request(request),
             Message::Notification(notification) => {
@@ -199,8 +213,11 @@ impl Server {
     /// Shows the picture of a document from now on.
     fn preview(&mut self, order: &Order) -> Answer<()> {
         let url = self.previews.start(order)?;
-        let answer = preview::browse(&url, &order.view, &order.told);
-        self.finish(order.id.clone(), answer);
+        // Not through the queue of what is told: who hears it would wait for itself.
+        if let Some(page) = preview::browse(&url, &order.view)? {
+            self.ask_client(preview::SHOW.as_str().into(), page);
+        }
+        self.finish(order.id.clone(), Ok(json!({ "url": url })));
         Ok(())
     }
 
@@ -249,7 +266,16 @@ impl Server {
         }
         match method {
             Method::Initialized => self.watch(),
-            Method::CancelRequest => self.cancel(read(params)?),
+            Method::CancelRequest => match read::<lsp::CancelParams>(params)?.id {
+                lsp::Id::Int(id) => self.cancel(id.into()),
+                lsp::Id::String(id) => self.cancel(id.into()),
+            },
+            Method::WindowWorkDoneProgressCancel => {
+                let lsp::WorkDoneProgressCancelParams { token } = read(params)?;
+                if let Some(id) = render::request_of(&token) {
+                    self.cancel(id);
+                }
+            }
             Method::TextDocumentDidOpen => {
                 let lsp::DidOpenTextDocumentParams { text_document: item } = read(params)?;
                 let key = Arc::make_mut(&mut self.view).documents.open(item.uri, item.version, item.text);
@@ -286,11 +312,7 @@ impl Server {
         Ok(())
     }
 
-    fn cancel(&mut self, params: lsp::CancelParams) {
-        let id: RequestId = match params.id {
-            lsp::Id::Int(id) => id.into(),
-            lsp::Id::String(id) => id.into(),
-        };
+    fn cancel(&mut self, id: RequestId) {
         self.desk.drop_question(&id);
         if let Some(cancelled) = self.waiting.incoming.complete(&id) {
             cancelled.store(true, Ordering::Relaxed);
@@ -314,13 +336,12 @@ impl Server {
         let folders = &mut Arc::make_mut(&mut self.view).folders;
         folders.retain(|folder| !removed.contains(folder) && !added.contains(folder));
         folders.extend(added);
-        let all = self.view.documents.iter().map(|(key, _)| key.clone()).collect();
-        self.touch(all);
+        self.touch_all();
     }
 
     fn close(&mut self, key: &Key) {
         Arc::make_mut(&mut self.view).documents.close(key);
-        self.reads.remove(key);
+        self.reads.forget(key);
         for told in self.board.close(key, &self.view) {
             self.publish(told);
         }
@@ -330,12 +351,9 @@ impl Server {
 
     /// Open documents have other texts: they and those that are made of them mean something else.
     fn changed_at(&mut self, keys: Vec<Key>) {
-        let stamp = self.view.documents.stamp();
-        self.changed.extend(keys.iter().map(|key| (key.clone(), stamp)));
-        let users = self.users(&keys);
-        let documents = &mut Arc::make_mut(&mut self.view).documents;
-        let users: Vec<Key> = users.into_iter().filter(|key| documents.touch(key)).collect();
-        let open = keys.into_iter().filter(|key| documents.get(key).is_some());
+        self.note(&keys, self.view.documents.stamp());
+        let users = self.spoil(self.reads.users(&keys));
+        let open = keys.into_iter().filter(|key| self.view.documents.get(key).is_some());
         let looked: Vec<Key> = open.chain(users).collect();
         self.desk.look(looked, &self.view);
         self.previews.follow(&self.view);
@@ -343,20 +361,21 @@ impl Server {
 
     /// Saved files have changed: only those mean something else that read them there.
     fn saved_at(&mut self, keys: Vec<Key>) {
-        let stamp = self.view.documents.stamp() + 1;
         let open = |key: &Key| self.view.documents.get(key).is_some();
         let keys: Vec<Key> = keys.into_iter().filter(|key| !open(key)).collect();
-        self.changed.extend(keys.iter().map(|key| (key.clone(), stamp)));
-        let users = self.users(&keys);
-        self.touch(users);
+        self.note(&keys, self.view.documents.stamp() + 1);
+        self.touch(self.reads.users(&keys));
     }
 
-    /// The open documents that are made of some files, but not these.
-    fn users(&self, keys: &[Key]) -> Vec<Key> {
-        let uses = |(user, reads): &(&Key, &BTreeSet<Key>)| {
-            !keys.contains(user) && keys.iter().any(|key| reads.contains(key))
-        };
-        self.reads.iter().filter(uses).map(|(user, _)| user.clone()).collect()
+    /// Keeps when files changed, or looks at everything again.
+    fn note(&mut self, keys: &[Key], stamp: u64) {
+        if !self.reads.note(keys, stamp) {
+            self.touch_all();
+        }
+    }
+
+    fn touch_all(&mut self) {
+        self.touch(self.view.documents.iter().map(|(key, _)| key.clone()).collect());
     }
 
     /// Open documents mean something else.
@@ -364,15 +383,22 @@ impl Server {
         if keys.is_empty() {
             return;
         }
+        let open = self.spoil(keys);
+        self.desk.look(open, &self.view);
+    }
+
+    /// What is known of documents is out of date, though the client has not edited them. Those that are open.
+    fn spoil(&mut self, keys: Vec<Key>) -> Vec<Key> {
         let documents = &mut Arc::make_mut(&mut self.view).documents;
         let open: Vec<Key> = keys.into_iter().filter(|key| documents.touch(key)).collect();
-        self.desk.look(open, &self.view);
+        self.reads.spoil(&open);
+        open
     }
 
     fn hear(&mut self, told: Told) {
         match told {
             Told::Answered(id, answer) => self.finish(id, answer),
-            Told::Changed => self.saved_at(self.reads.values().flatten().cloned().collect()),
+            Told::Changed => self.saved_at(self.reads.files().into_iter().cloned().collect()),
             Told::Notifies(method, params) => self.notify(method, params),
             Told::Asks(method, params) => self.ask_client(method, params),
             Told::Looked { key, view, reads, found } => {
@@ -381,18 +407,31 @@ impl Server {
                 if now.is_none() || seen != now {
                     return;
                 }
-                // What it reads may have changed while it was looked at, when nobody knew that it does.
-                let stamp = view.documents.stamp();
-                let late = |read: &Key| self.changed.get(read).is_some_and(|&changed| changed > stamp);
-                let again = reads.iter().any(late);
-                self.reads.insert(key.clone(), reads);
+                let is_late = self.reads.take(&key, reads, view.documents.stamp());
                 self.follow();
-                if again {
+                if is_late {
                     return self.touch(vec![key]);
+                }
+                // Once for all that one edit has changed.
+                if self.reads.settle(&key) {
+                    self.refresh();
                 }
                 for told in self.board.take(key, found, &self.view) {
                     self.publish(told);
                 }
+            }
+        }
+    }
+
+    /// Has the client ask again for what it shows in texts that it did not edit.
+    fn refresh(&mut self) {
+        let Client { refreshes_hints, refreshes_tokens, .. } = self.view.session.client;
+        for (can, method) in [
+            (refreshes_hints, lsp::LspRequestMethod::WorkspaceInlayHintRefresh),
+            (refreshes_tokens, lsp::LspRequestMethod::WorkspaceSemanticTokensRefresh),
+        ] {
+            if can {
+                self.ask_client(method.as_str().into(), Value::Null);
             }
         }
     }
@@ -405,20 +444,7 @@ impl Server {
             self.watcher = Watcher::new(None, move || drop(tell.try_send(Told::Changed))).ok();
             return;
         }
-        let pattern = "**/*.{rt,csv,png,jpg,jpeg,webp,hdr,exr,pfm,ply,obj,stl}";
-        let watchers = vec![lsp::FileSystemWatcher {
-            glob_pattern: lsp::GlobPattern::Pattern(pattern.into()),
-            kind: None,
-        }];
-        let options = lsp::DidChangeWatchedFilesRegistrationOptions { watchers };
-        let registration = lsp::Registration {
-            id: "watched-files".into(),
-            method: Method::WorkspaceDidChangeWatchedFiles.as_str().into(),
-            register_options: serde_json::to_value(options).ok(),
-        };
-        let params = lsp::RegistrationParams { registrations: vec![registration] };
-        let method = lsp::LspRequestMethod::ClientRegisterCapability.as_str().to_string();
-        self.ask_client(method, params);
+        self.ask_client(lsp::LspRequestMethod::ClientRegisterCapability.as_str().into(), watched());
     }
 
     /// Asks the client something whose answer makes no difference.
@@ -431,8 +457,8 @@ impl Server {
     fn follow(&mut self) {
         let Some(watcher) = &mut self.watcher else { return };
         let saved = |key: &&Key| self.view.documents.get(key).is_none();
-        let files: BTreeSet<&Key> = self.reads.values().flatten().filter(saved).collect();
-        watcher.follow(files.into_iter().filter_map(Key::path).map(PathBuf::from));
+        let files = self.reads.files().into_iter().filter(saved);
+        watcher.follow(files.filter_map(Key::path).map(PathBuf::from));
     }
 
     fn publish(&self, params: lsp::PublishDiagnosticsParams) {

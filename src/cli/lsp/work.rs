@@ -303,6 +303,11 @@ fn not_open(uri: &Uri) -> Failure {
 
 #[cfg(test)]
 mod tests {
+    use super::super::client::Client;
+    use super::super::document::Encoding;
+    use super::super::documents::Documents;
+    use super::super::pages::Pages;
+    use super::super::view::Session;
     use super::*;
 
     #[test]
@@ -311,5 +316,34 @@ mod tests {
         assert_eq!(failed.code, ErrorCode::InternalError as i32);
         assert!(failed.message.ends_with("at 7"), "{}", failed.message);
         assert_eq!(guarded(|| 4), Ok(4));
+    }
+
+    #[test]
+    fn behind_a_panic_the_next_question_is_answered() {
+        let (tell, told) = crossbeam_channel::bounded(8);
+        let desk = Desk::start(&tell).unwrap();
+        let session = Session {
+            client: Client::default(),
+            encoding: Encoding::Utf16,
+            root: None,
+            pages: Pages::default(),
+            memory: Arc::default(),
+        };
+        let view =
+            Arc::new(View { session: Arc::new(session), documents: Documents::default(), folders: vec![] });
+        let ask = |lane: Lane, id: i32, run: Run| {
+            let (params, cancelled) = (Value::Null, Arc::default());
+            desk.ask(lane, Question { id: id.into(), run, params, view: view.clone(), cancelled });
+        };
+        for lane in [Lane::Text, Lane::Meaning] {
+            ask(lane, 1, |_, _| panic!("oh"));
+            ask(lane, 2, |_, _| Ok(Value::Null));
+            let answers = [told.recv(), told.recv()].map(|told| match told {
+                Ok(Told::Answered(id, answer)) => (id, answer.map_err(|failure| failure.code)),
+                _ => panic!("no answer"),
+            });
+            let wrong: Result<Value, i32> = Err(ErrorCode::InternalError as i32);
+            assert_eq!(answers, [(RequestId::from(1), wrong), (RequestId::from(2), Ok(Value::Null))]);
+        }
     }
 }

@@ -91,6 +91,60 @@ fn names_are_changed_in_all_files_open_or_not() {
 }
 
 #[test]
+fn a_param_of_a_part_is_renamed_where_it_is_set_and_a_name_that_is_taken_is_refused() {
+    let desk = Desk::new();
+    desk.put(
+        "woods.rt",
+        "part stool {\n  param seat: length = 45cm\n  param wide: length = 30cm\n  sphere { radius: seat - wide }\n}\n",
+    );
+    let mut client = Client::new(&desk);
+    client.open("scene.rt", "import \"woods.rt\" as woods\nwoods.stool { seat: 40cm }\n");
+    let rename = |client: &mut Client, name: &str| {
+        let more = json!({ "position": { "line": 1, "character": 15 }, "newName": name });
+        let params = about(client, "scene.rt", more);
+        client.ask("textDocument/rename", params)
+    };
+    let renamed = rename(&mut client, "tall").unwrap();
+    let expected = [("scene.rt", 1, Some(1)), ("woods.rt", 2, None)].map(|(a, b, c)| (a.to_string(), b, c));
+    assert_eq!(edits(&renamed), expected);
+    let refused = rename(&mut client, "wide").unwrap_err();
+    assert_eq!(refused["code"], -32803);
+    let said = refused["message"].as_str().unwrap();
+    assert!(said.contains("`wide` is declared at") && said.ends_with("line 3"), "{said}");
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn what_follows_from_a_scene_stands_beside_it() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    let scene = "let r = 2 * 15cm\nsphere { radius: r }\n\
+                 camera { from: (0, 1, 4)m, look: (0, 0, 0)m, lens { focal: 50mm, stop: 2, focus: 4m } }\n";
+    client.open("a.rt", scene);
+    let whole = json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 3, "character": 0 } });
+    let params = about(&client, "a.rt", json!({ "range": whole }));
+    let hints = client.ask("textDocument/inlayHint", params).unwrap();
+    let said: Vec<(u64, &str)> = hints
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|hint| (hint["position"]["line"].as_u64().unwrap(), hint["label"].as_str().unwrap()))
+        .collect();
+    assert!(said.iter().any(|(line, text)| *line == 0 && text.contains("30cm")), "{said:?}");
+    // 2 atan(36mm / (2 · 50mm)).
+    assert!(said.iter().any(|(line, text)| *line == 2 && text.contains("39.6deg")), "{said:?}");
+    let link = "sky { image: \"dawn.png\" }\nimport \"woods.rt\" as woods\n";
+    desk.put("woods.rt", "material oak = diffuse {}\n");
+    client.replace("a.rt", 2, link);
+    let params = about(&client, "a.rt", json!({}));
+    let links = client.ask("textDocument/documentLink", params).unwrap();
+    let targets: Vec<&str> =
+        links.as_array().unwrap().iter().map(|link| link["target"].as_str().unwrap()).collect();
+    assert!(targets.contains(&&*client.uri("woods.rt")), "{targets:?}");
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
 fn slips_have_mends_and_warnings_can_be_allowed() {
     let desk = Desk::new();
     let mut client = Client::new(&desk);
@@ -166,6 +220,19 @@ fn the_text_is_told_in_its_parts() {
     let commands: Vec<&str> =
         lenses.as_array().unwrap().iter().map(|lens| lens["command"]["command"].as_str().unwrap()).collect();
     assert_eq!(commands, ["rtc.startPreview", "rtc.render"]);
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn what_is_selected_is_laid_out_alone() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    client.open("a.rt", "sphere{radius:1m}\nbox{size:(1,2,3)m}\nlet  q=1\n");
+    let line = |line: u32, end: u32| json!({ "start": { "line": line, "character": 0 }, "end": { "line": end, "character": 0 } });
+    let options = json!({ "tabSize": 2, "insertSpaces": true });
+    let params = about(&client, "a.rt", json!({ "range": line(1, 2), "options": options }));
+    let edits = client.ask("textDocument/rangeFormatting", params).unwrap();
+    assert_eq!(edits, json!([{ "range": line(1, 2), "newText": "box { size: (1, 2, 3)m }\n" }]));
     assert_eq!(client.end(), Some(0));
 }
 

@@ -83,6 +83,52 @@ fn what_is_wrong_in_an_imported_file_is_said_there() {
     let changes = json!([{ "uri": client.uri("woods.rt"), "type": 2 }]);
     client.tell("workspace/didChangeWatchedFiles", json!({ "changes": changes }));
     assert_eq!(client.codes("woods.rt", None), Vec::<String>::new());
+    // Wrong once more, it is said as long as somebody reads it.
+    desk.put("woods.rt", "material oak = diffuse { color: 8 }\n");
+    let changes = json!([{ "uri": client.uri("woods.rt"), "type": 2 }]);
+    client.tell("workspace/didChangeWatchedFiles", json!({ "changes": changes }));
+    assert_eq!(client.codes("woods.rt", None), ["E0205"]);
+    let document = document(&client, "scene.rt");
+    client.tell("textDocument/didClose", document);
+    assert_eq!(client.codes("woods.rt", None), Vec::<String>::new());
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn places_that_belong_to_a_message_are_told_with_it() {
+    let desk = Desk::new();
+    desk.put("woods.rt", "part stool {\n  param seat: length = 45cm\n  sphere { radius: seat - 50cm }\n}\n");
+    let mut client = Client::new(&desk);
+    client.open("twice.rt", "let a = 1m\nlet a = 2m\nsphere { radius: a }\n");
+    let said = client.diagnostics("twice.rt", Some(1));
+    let first = &said[0]["relatedInformation"][0];
+    assert_eq!(
+        (&said[0]["code"], &first["location"]["range"]["start"]["line"]),
+        (&json!("E0102"), &json!(0))
+    );
+    // The uses that led into a part of another file.
+    let scene = "import \"woods.rt\" as woods\nwoods.stool { seat: 40cm }\n";
+    client.open("scene.rt", scene);
+    let said = client.diagnostics("woods.rt", None);
+    let used = &said[0]["relatedInformation"][0];
+    assert_eq!(
+        (&said[0]["code"], &used["location"]["uri"]),
+        (&json!("E0401"), &json!(client.uri("scene.rt")))
+    );
+    assert_eq!(used["location"]["range"]["start"]["line"], 1, "{used}");
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn what_is_shown_in_texts_that_read_an_edited_one_is_asked_for_again() {
+    let desk = Desk::new();
+    let refreshes = json!({ "inlayHint": { "refreshSupport": true } });
+    let mut client = Client::with(&desk, json!({ "workspace": refreshes }));
+    client.open("sizes.rt", "let seat = 45cm\n");
+    client.open("scene.rt", "import \"sizes.rt\" as sizes\nsphere { radius: sizes.seat }\n");
+    assert_eq!(client.codes("scene.rt", Some(1)), Vec::<String>::new());
+    client.replace("sizes.rt", 2, "let seat = 50cm\n");
+    client.wait("to be told to ask again", |message| message["method"] == "workspace/inlayHint/refresh");
     assert_eq!(client.end(), Some(0));
 }
 
@@ -110,7 +156,45 @@ fn a_picture_is_made_of_what_is_not_saved() {
     client.replace("ball.rt", 2, "sphere { radius: 8deg }\n");
     let refused =
         client.ask("workspace/executeCommand", json!({ "command": "rtc.render", "arguments": about }));
-    assert_eq!(refused.unwrap_err()["message"], "the scene has an error");
+    assert_eq!(
+        refused.unwrap_err()["message"],
+        "the scene has an error: `radius` wants a length, this is an angle"
+    );
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn a_picture_that_is_being_made_can_be_cancelled_where_its_progress_is_shown() {
+    let desk = Desk::new();
+    let mut client = Client::with(&desk, json!({ "window": { "workDoneProgress": true } }));
+    client.open("ball.rt", "sphere { radius: 1m }\nrender { size: (320, 240), samples: 1000000 }\n");
+    let arguments = json!([client.uri("ball.rt")]);
+    let asked =
+        client.begin("workspace/executeCommand", json!({ "command": "rtc.render", "arguments": arguments }));
+    let begun = client.wait("progress", |message| message["params"]["value"]["kind"] == "begin");
+    assert_eq!(begun["params"]["value"]["cancellable"], true);
+    client.tell("window/workDoneProgress/cancel", json!({ "token": begun["params"]["token"] }));
+    assert_eq!(client.answer(&json!(asked)).unwrap_err()["code"], -32800);
+    client.wait("progress", |message| message["params"]["value"]["kind"] == "end");
+    assert!(!desk.path("ball.png").exists());
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn a_picture_does_not_replace_what_its_scene_reads() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    let small = "render { size: (24, 18), samples: 1 }\n";
+    client.open("room.rt", &format!("sphere {{ radius: 1m }}\n{small}"));
+    let arguments = json!([client.uri("room.rt")]);
+    let render = json!({ "command": "rtc.render", "arguments": arguments });
+    client.ask("workspace/executeCommand", render.clone()).unwrap();
+    let made = desk.get("room.png");
+    let text = format!("sphere {{ radius: 1m }}\nsky {{ image: \"room.png\" }}\n{small}");
+    client.replace("room.rt", 2, &text);
+    let refused = client.ask("workspace/executeCommand", render).unwrap_err();
+    assert!(refused["message"].as_str().unwrap().ends_with("would be replaced by the picture"), "{refused}");
+    assert_eq!(desk.get("room.png"), made);
     assert_eq!(client.end(), Some(0));
 }
 

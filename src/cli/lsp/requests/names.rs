@@ -33,7 +33,7 @@ pub fn definition(
 /// Every use of what is named at a place.
 pub fn references(asked: &mut Asked, params: lsp::ReferenceParams) -> Answer<Option<Vec<lsp::Location>>> {
     let (meaning, at) = place(asked, params.text_document_position_params)?;
-    let others = users(asked, &meaning, at)?;
+    let (others, _) = users(asked, &meaning, at)?;
     let all: Vec<&Analysis> = analyses(&meaning, &others);
     let found = ide::references(&all, &meaning.analysis, at, params.context.include_declaration);
     let located: BTreeSet<(Key, [u32; 4])> =
@@ -82,7 +82,10 @@ pub fn prepare(
 /// The edits that give it another name.
 pub fn rename(asked: &mut Asked, params: lsp::RenameParams) -> Answer<Option<lsp::WorkspaceEdit>> {
     let (meaning, at) = place(asked, params.text_document_position_params)?;
-    let others = users(asked, &meaning, at)?;
+    let (others, complete) = users(asked, &meaning, at)?;
+    if !complete {
+        return Err(Failure::plain("the workspace has too many files to find all uses"));
+    }
     let all = analyses(&meaning, &others);
     let edits = ide::rename(&all, &meaning.analysis, at, &params.new_name).map_err(Failure::plain)?;
     let mut by_file: BTreeMap<Key, Vec<lsp::TextEdit>> = BTreeMap::new();

@@ -4,7 +4,7 @@ use super::super::analyst::{Meaning, uri};
 use super::super::documents::Key;
 use super::super::view::View;
 use super::super::work::{Answer, Asked, Failure};
-use super::workspace::scenes;
+use super::workspace::{DEPTH, scenes};
 use gen_lsp_types as lsp;
 use rt_lang::ide::{Symbol, SymbolKind};
 use std::collections::BTreeSet;
@@ -93,7 +93,7 @@ pub fn workspace(
 
 /// The open scenes, and those of the folders of the workspace.
 fn all_scenes(view: &View) -> BTreeSet<Key> {
-    let saved = view.folders.iter().flat_map(|folder| scenes(folder)).map(Key::File);
+    let saved = view.folders.iter().flat_map(|folder| scenes(folder, DEPTH).0).map(Key::File);
     view.documents.iter().map(|(key, _)| key.clone()).chain(saved).collect()
 }
 
