@@ -34,6 +34,15 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
     let same_start = |guess: &Guess| {
         what != "unit" || guess.name.chars().next() == start || guess.name == name.text.to_lowercase()
     };
+    if what == "unit"
+        && let Some(unit) = units::spelt_out(&name.text)
+    {
+        return diagnostic.help(format!("it is written `{unit}`")).fix(name.span, unit);
+    }
+    if (what, name.text.as_str()) == ("unit", "M") {
+        // A million may be meant.
+        return diagnostic.help("metres are written `m`").offer("write `m`", vec![(name.span, "m".into())]);
+    }
     if let Some(help) = said_otherwise(what, &name.text) {
         return diagnostic.help(help);
     }
@@ -90,8 +99,6 @@ fn said_otherwise(what: &str, name: &str) -> Option<String> {
         ("function", "lerp") => "`mix(a, b, t)` lies between two values".into(),
         ("kind", "new") => "leave it out: a thing begins with its kind: `sphere { … }`".into(),
         ("kind", "while") => "`for` repeats: `for i in range(7) { … }`".into(),
-        ("unit", "meter" | "metre" | "meters" | "metres" | "M") => "metres are written `m`".into(),
-        ("unit", "degree" | "degrees") => "degrees are written `deg`".into(),
         ("unit", "px" | "pixel" | "pixels") => "a number of pixels has no unit".into(),
         _ => return None,
     })
