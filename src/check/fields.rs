@@ -5,7 +5,7 @@ use super::program::{FieldPlace, PartId};
 use super::types::{Kind, Type};
 use super::{Checker, errors};
 use crate::schema::{PLACED, familiar};
-use crate::syntax::ast::Name;
+use crate::syntax::ast::{self, Entry, Name};
 
 impl Checker<'_> {
     /// The field of a kind with this name.
@@ -87,8 +87,28 @@ impl Checker<'_> {
         }
     }
 
-    /// `free` says of each field whether the body may still give it. `told` is where the last one of this body was reported whose way to write it here takes in several: `min` and
-    /// `max`, which are one slip.
+    /// Which fields a body gives by their own names.
+    pub(super) fn named(
+        &self,
+        kind: Kind,
+        entries: &[Entry],
+        parts: &[(usize, &ast::Construct)],
+    ) -> Vec<bool> {
+        let mut named = vec![false; self.field_count(kind)];
+        for entry in entries {
+            if let Entry::Field(ast::Field { name, .. }) | Entry::Broken(ast::Broken { name: Some(name), .. }) =
+                entry
+                && let Some(field) = self.find_field(kind, &name.text)
+            {
+                named[self.bit(kind, field)] = true;
+            }
+        }
+        parts.iter().for_each(|(index, _)| named[*index] = true);
+        named
+    }
+
+    /// `free` says of each field whether the body may still give it. `told` is where the last one of this body was reported
+    /// whose way to write it here takes in several: `min` and `max`, which are one slip.
     pub(super) fn unknown_field(&mut self, kind: Kind, name: &Name, free: &[bool], told: &mut Option<usize>) {
         let all = self.field_names(kind);
         let all: Vec<&str> = all.iter().map(String::as_str).collect();

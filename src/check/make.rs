@@ -216,9 +216,8 @@ impl Checker<'_> {
             };
             let Some(field) = self.find_field(kind, &name.text) else {
                 let named = named.get_or_insert_with(|| self.named(kind, entries, parts));
-                let free: Vec<bool> = (places.iter().zip(named.iter()))
-                    .map(|(place, named)| place.is_none() && !named)
-                    .collect();
+                let both = places.iter().zip(named.iter());
+                let free: Vec<bool> = both.map(|(place, named)| place.is_none() && !named).collect();
                 if value.is_some() {
                     self.unknown_field(kind, name, &free, &mut told);
                 }
@@ -282,21 +281,6 @@ impl Checker<'_> {
         if let Kind::BuiltIn(kind) = kind {
             self.conflicts(kind, make.given, &places);
         }
-    }
-
-    /// Which fields a body gives by their own names.
-    fn named(&self, kind: Kind, entries: &[Entry], parts: &[(usize, &ast::Construct)]) -> Vec<bool> {
-        let mut named = vec![false; self.field_count(kind)];
-        for entry in entries {
-            if let Entry::Field(ast::Field { name, .. }) | Entry::Broken(ast::Broken { name: Some(name), .. }) =
-                entry
-                && let Some(field) = self.find_field(kind, &name.text)
-            {
-                named[self.bit(kind, field)] = true;
-            }
-        }
-        parts.iter().for_each(|(index, _)| named[*index] = true);
-        named
     }
 
     /// An entry of which nothing was understood may be any field: those that must be given count as given. So does the
