@@ -114,7 +114,7 @@ fn of_statement(analysis: &Analysis, statement: &Statement, ty: &Type) -> Hover 
     let doc = statement.doc.as_ref().map(|doc| doc.to_string()).unwrap_or_default();
     let (shown, colour) = match place {
         Some((name, value)) => (
-            seen(analysis, name, value).map(|seen| say::value(seen, Some(ty))),
+            seen(analysis, name, value).and_then(|seen| say::value(seen, Some(ty))),
             colour(analysis, value).or(colour(analysis, name)),
         ),
         None => (None, None),
@@ -154,7 +154,7 @@ fn seen(analysis: &Analysis, name: Span, value: Span) -> Option<&Seen> {
 /// What an expression came to, as the language writes it.
 pub(super) fn value(analysis: &Analysis, place: Span) -> Option<String> {
     let seen = analysis.study.values.get(&place)?;
-    Some(say::value(seen, analysis.study.notes.type_of(place)))
+    say::value(seen, analysis.study.notes.type_of(place))
 }
 
 /// The colour that an expression is.

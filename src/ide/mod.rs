@@ -21,6 +21,7 @@ mod lenses;
 mod lex;
 mod links;
 mod named;
+mod optics;
 mod rename;
 mod say;
 mod selection;
@@ -31,10 +32,9 @@ mod typing;
 mod walk;
 
 pub use answers::*;
-pub use colours::present;
 pub use complete::complete;
 pub use rename::{references, rename};
-pub use say::{default, range};
+pub use say::{default, hex, range};
 pub use signature::signatures;
 pub use symbols::outline;
 
@@ -135,19 +135,27 @@ impl Analysis {
         selection::selection(self, at)
     }
 
-    /// What the words of a part of the text are, in order. None overlaps another, or goes over a line end.
-    pub fn tokens(&self, range: Range<usize>) -> Vec<Token> {
-        tokens::tokens(self, range)
+    /// What the words of a part of the text are, in order. None overlaps another, or goes over a line end. Once `stop` says so,
+    /// the rest is left out.
+    pub fn tokens(&self, range: Range<usize>, stop: Stop) -> Vec<Token> {
+        tokens::tokens(self, range, stop)
     }
 
-    /// The colours that are written in the text. [`present`] says how another is written in place of one.
-    pub fn colours(&self) -> Vec<Colour> {
-        colours::colours(self)
+    /// The colours that are written in the text; only some once `stop` says so.
+    pub fn colours(&self, stop: Stop) -> Vec<Colour> {
+        colours::colours(self, stop)
+    }
+
+    /// The ways to write a colour in place of the one in a part of the text, each to replace all of it: in its own form
+    /// first. Red, green and blue are display-referred, from 0 to 1.
+    pub fn present(&self, range: Range<usize>, value: [f64; 3]) -> Vec<String> {
+        colours::present(self, range, value)
     }
 
     /// What a part of the text does not say and is known all the same: what expressions come to, what follows from a lens.
-    pub fn hints(&self, range: Range<usize>) -> Vec<Hint> {
-        hints::hints(self, range)
+    /// Only some of it once `stop` says so.
+    pub fn hints(&self, range: Range<usize>, stop: Stop) -> Vec<Hint> {
+        hints::hints(self, range, stop)
     }
 
     /// The edits that lay out a part of the text as the formatter does; none where it has an error.

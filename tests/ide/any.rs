@@ -18,7 +18,7 @@ fn ask(text: &str, at: usize) {
         |span: Span| assert!(analysis.sources.get(span.source).text.get(span.range()).is_some(), "{text}");
     let all = 0..text.len();
     let (mut last, mut around) = (0, None::<Span>);
-    for token in analysis.tokens(all.clone()) {
+    for token in analysis.tokens(all.clone(), &|| false) {
         sound(token.span);
         assert!(token.span.range().start >= last, "tokens overlap in {text}");
         last = token.span.range().end;
@@ -31,17 +31,22 @@ fn ask(text: &str, at: usize) {
     analysis.folds().iter().for_each(|fold| sound(fold.span));
     analysis.links().iter().for_each(|link| sound(link.span));
     analysis.lenses().iter().for_each(|lens| sound(lens.span));
-    analysis.colours().iter().for_each(|colour| sound(colour.span));
+    analysis.colours(&|| false).iter().for_each(|colour| sound(colour.span));
     analysis.symbols().iter().for_each(|symbol| {
         sound(symbol.span);
         assert!(symbol.span.contains(symbol.select), "{text}");
     });
     assert_eq!(places(&ide::outline(analysis.source())), places(&analysis.symbols()), "{text}");
-    assert!(analysis.hints(all.clone()).iter().all(|hint| text.is_char_boundary(hint.at)), "{text}");
+    assert!(
+        analysis.hints(all.clone(), &|| false).iter().all(|hint| text.is_char_boundary(hint.at)),
+        "{text}"
+    );
     for fix in analysis.fixes(all.clone()) {
         assert!(fix.edits.iter().all(|edit| text.get(edit.at.range.clone()).is_some()), "{text}");
     }
     analysis.format(at..at);
+    analysis.present(at..at, [1.0, 0.0, 0.0]);
+    analysis.present(at..text.len().max(at), [f64::NAN, 0.5, 2.0]);
     analysis.hover(at).iter().for_each(|hover| sound(hover.span));
     analysis.definition(at).iter().for_each(|found| sound(found.name));
     ide::references(&[], &analysis, at, true);

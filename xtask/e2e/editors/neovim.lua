@@ -98,6 +98,14 @@ step('what is laid out is indented so', function()
   vim.cmd('bwipeout!')
 end)
 
+step('what a comment holds stays where it is', function()
+  local noted = 'sphere {\n  /* a\n     b */\n  radius: 1m // /* c\n}\nlet a = 4\n  / 2\n/*\n * d\n    */\nplane {\n}\n'
+  open('noted.rt', noted)
+  vim.cmd('silent normal! gg=G')
+  check(text() == noted, 'the comments are indented otherwise:\n' .. vim.diff(noted, text()))
+  vim.cmd('bwipeout!')
+end)
+
 step('the parser compiles, colours and folds', function()
   check(require('rtc').install_parser(), 'the parser compiles')
   open('scene.rt', SCENE)
