@@ -239,7 +239,7 @@ step('the live preview serves the text, saved or not', function()
   vim.lsp.codelens.refresh({ bufnr = 0 })
   wait('something stands above the camera', function()
     return vim.iter(vim.lsp.codelens.get(0)):any(function(lens)
-      return lens.range.start.line == 6
+      return lens.range.start.line == 8
     end)
   end)
   vim.ui.select = function(offered, about, choose)
