@@ -37,7 +37,7 @@ pub(super) fn hints(analysis: &Analysis, range: Range<usize>, stop: Stop) -> Vec
 /// for all of them.
 fn of_cameras(analysis: &Analysis, stop: Stop) -> Vec<Hint> {
     let mut found: BTreeMap<usize, Option<Hint>> = BTreeMap::new();
-    let here = analysis.study.cameras.iter().filter(|(_, place)| place.source == analysis.main);
+    let here = analysis.study.views.iter().filter(|(_, place)| place.source == analysis.main);
     let beside = if here.clone().count() == 1 { optics::beside(analysis) } else { None };
     for (seen, place) in here.take_while(|_| !stop()) {
         for hint in camera_hints(analysis, optics::places(analysis, *place, beside), seen) {

@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The most that is told of one file: nobody reads more, and there may be as many as characters.
 const MOST: usize = 1_000;
 
-/// What is said of each file of an analysis; of the document itself also where it is nothing.
+/// What is said of each file of an analysis: of the document itself, and of the texts it imports, also where it is nothing.
 pub type Found = BTreeMap<Key, Said>;
 
 /// What is said of a file.
@@ -19,12 +19,14 @@ pub struct Said {
     /// When its text was edited of which it is said; none where it was read as it is saved.
     edited: Option<u64>,
     all: Vec<lsp::Diagnostic>,
+    /// Which of it does not hold where another text imports this one, by their indices.
+    alone: BTreeSet<usize>,
 }
 
 impl Said {
     /// Nothing yet.
     fn new(view: &View, key: &Key) -> Said {
-        Said { edited: edited(view, key), all: vec![] }
+        Said { edited: edited(view, key), all: vec![], alone: BTreeSet::new() }
     }
 }
 
@@ -47,11 +49,17 @@ pub fn found(meaning: &Meaning, key: &Key, view: &View) -> Found {
     if !is_known {
         return found;
     }
+    for (id, _) in meaning.analysis.files() {
+        let file = meaning.key(id);
+        found.entry(file.clone()).or_insert_with(|| Said::new(view, &file));
+    }
+    let alone = meaning.analysis.alone();
     let mut more: BTreeMap<Key, usize> = BTreeMap::new();
-    for diagnostic in &meaning.analysis.diagnostics {
+    for (index, diagnostic) in meaning.analysis.diagnostics.iter().enumerate() {
         let file = meaning.key(diagnostic.primary.span.source);
         let said = found.entry(file.clone()).or_insert_with(|| Said::new(view, &file));
         if said.all.len() < MOST {
+            said.alone.extend(alone.contains(&index).then_some(said.all.len()));
             said.all.push(convert(diagnostic, meaning, view));
         } else {
             *more.entry(file).or_default() += 1;
@@ -171,8 +179,14 @@ impl Board {
             return None;
         }
         let own = self.by_document.get(file).into_iter();
-        let others = self.by_document.iter().filter(|(key, _)| *key != file).map(|(_, found)| found);
-        let said = own.chain(others).filter(is_current).filter_map(|found| found.get(file));
+        let others = || self.by_document.iter().filter(|(key, _)| *key != file).map(|(_, found)| found);
+        let is_imported = others().any(|found| found.contains_key(file));
+        let said = own.chain(others()).filter(is_current).filter_map(|found| found.get(file));
+        let holds = |said: &Said, index: usize| !is_imported || !said.alone.contains(&index);
+        let said = said.flat_map(|said| {
+            let all = said.all.iter().enumerate();
+            all.filter(move |(index, _)| holds(said, *index)).map(|(_, diagnostic)| diagnostic)
+        });
         let mut seen = BTreeSet::new();
         let place = |range: lsp::Range| {
             [range.start.line, range.start.character, range.end.line, range.end.character]
@@ -180,7 +194,7 @@ impl Board {
         let is_new = |diagnostic: &&lsp::Diagnostic| {
             seen.insert((place(diagnostic.range), format!("{:?}", diagnostic.message)))
         };
-        Some(said.flat_map(|said| &said.all).filter(is_new).cloned().collect())
+        Some(said.filter(is_new).cloned().collect())
     }
 
     /// What is to be told of a file, if that is not what was told.

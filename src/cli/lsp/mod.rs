@@ -16,7 +16,7 @@
 //! | [`work`], [`analyst`] | the threads that answer, and what documents mean |
 //! | [`requests`] | one question of the protocol each |
 //! | [`diagnostics`], [`pages`] | what is said of documents, and where it is explained |
-//! | [`edits`] | what is different between two texts |
+//! | [`edits`] | edits that make one text of another, and of several documents |
 //! | [`commands`], [`render`], [`preview`] | what a person can have done |
 
 mod analyst;

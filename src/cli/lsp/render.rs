@@ -2,7 +2,7 @@
 
 use super::commands::Order;
 use super::documents::Key;
-use super::work::{Answer, Failure, Told};
+use super::work::{Answer, Ask, Failure, Told};
 use super::world::World;
 use crate::cli::Problem;
 use crate::cli::build::{self, refuse_inputs_as_outputs};
@@ -89,27 +89,32 @@ fn beside<T>(order: &Order, control: &Control, name: &str, work: impl FnOnce() -
 
 fn watch(order: &Order, control: &Control, name: &str, done: &AtomicBool) {
     let token = token(&order.id);
-    let shows = order.view.session.client.progress;
-    let progress = |value: Value| {
-        if shows {
-            tell(order, Notified::Progress, json!({ "token": token, "value": value }));
-        }
-    };
-    if shows {
-        let params = json!({ "token": token });
-        let method = lsp::LspRequestMethod::WindowWorkDoneProgressCreate.as_str();
-        let _ = order.told.send(Told::Asks(method.into(), params));
+    let progress = |value: Value| tell(order, Notified::Progress, json!({ "token": token, "value": value }));
+    // Nothing is told under a token before the client has taken it.
+    let create = Ask::new(lsp::LspRequestMethod::WindowWorkDoneProgressCreate, json!({ "token": token }));
+    let (agreed, mut begun) = (create.agreed.clone(), false);
+    if order.view.session.client.progress {
+        let _ = order.told.send(Told::Asks(create));
     }
-    progress(json!({ "kind": "begin", "title": name, "cancellable": true, "percentage": 0 }));
     while !done.load(Ordering::Relaxed) {
         if order.cancelled.load(Ordering::Relaxed) {
             control.cancel();
         }
         let far = control.progress();
-        progress(json!({ "kind": "report", "percentage": 100 * far.done / far.total.max(1) }));
+        let percentage = 100 * far.done / far.total.max(1);
+        if begun {
+            progress(json!({ "kind": "report", "percentage": percentage }));
+        } else if agreed.load(Ordering::Relaxed) {
+            begun = true;
+            progress(
+                json!({ "kind": "begin", "title": name, "cancellable": true, "percentage": percentage }),
+            );
+        }
         std::thread::park_timeout(PERIOD);
     }
-    progress(json!({ "kind": "end" }));
+    if begun {
+        progress(json!({ "kind": "end" }));
+    }
 }
 
 /// What the progress of a request is told under.

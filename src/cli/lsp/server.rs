@@ -1,6 +1,8 @@
 //! What a message leads to. The one thread that knows all documents never works for long: whatever takes time is done by
 //! others, with the documents as they were.
 
+mod changes;
+
 use super::capabilities::{initialized, watched};
 use super::client::{Client, encoding};
 use super::commands::{self, Order, Renders};
@@ -10,10 +12,10 @@ use super::pages::Pages;
 use super::preview::{self, Previews};
 use super::reads::Reads;
 use super::render;
-use super::requests::{self, read};
+use super::requests::{self, Lane, read};
 use super::uri::path_of;
 use super::view::{Session, View};
-use super::work::{Answer, Desk, Failure, Question, Told, guarded};
+use super::work::{Answer, Ask, Desk, Failure, Question, Told, guarded};
 use crate::cli::Exit;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::live::watcher::Watcher;
@@ -59,8 +61,9 @@ pub struct Server {
     renders: Renders,
     /// Tells of files that change, where the client does not.
     watcher: Option<Watcher>,
-    /// What waits for an answer, each with what says that none is wanted.
-    waiting: ReqQueue<Arc<AtomicBool>, ()>,
+    /// What waits for an answer: of the client each with what says that none is wanted, and of the server each with what says
+    /// that there was one.
+    waiting: ReqQueue<Arc<AtomicBool>, Arc<AtomicBool>>,
     count: usize,
     board: Board,
     reads: Reads,
@@ -144,7 +147,10 @@ impl Server {
                 let _ = self.notification(notification);
             }
             Message::Response(response) => {
-                self.waiting.outgoing.complete(response.id);
+                let asked = self.waiting.outgoing.complete(response.id);
+                if let Some(agreed) = asked.filter(|_| response.response_result.is_ok()) {
+                    agreed.store(true, Ordering::Relaxed);
+                }
             }
         }
     }
@@ -207,7 +213,16 @@ impl Server {
         let (view, told, interrupt) = (self.view.clone(), self.tell.clone(), self.interrupt.clone());
         let order = Order { id, key: Key::of(&about.uri), about, view, cancelled, told, interrupt };
         match command.as_str() {
-            commands::PREVIEW => self.preview(&order),
+            commands::PREVIEW if order.about.camera.is_some() => {
+                let question = self.previews.want(order);
+                self.desk.ask(Lane::Meaning, question);
+                Ok(())
+            }
+            commands::PREVIEW => {
+                let address = self.preview(&order)?;
+                self.finish(order.id, Ok(address));
+                Ok(())
+            }
             _ => {
                 if let Some(before) = self.renders.start(order)? {
                     self.cancel(before);
@@ -217,15 +232,14 @@ impl Server {
         }
     }
 
-    /// Shows the picture of a document from now on.
-    fn preview(&mut self, order: &Order) -> Answer<()> {
+    /// Shows the picture of a document from now on, and gives the address.
+    fn preview(&mut self, order: &Order) -> Answer<Value> {
         let url = self.previews.start(order)?;
         // Not through the queue of what is told: who hears it would wait for itself.
         if let Some(page) = preview::browse(&url, &order.view)? {
-            self.ask_client(preview::SHOW.as_str().into(), page);
+            self.ask_client(Ask::new(preview::SHOW, page));
         }
-        self.finish(order.id.clone(), Ok(json!({ "url": url })));
-        Ok(())
+        Ok(json!({ "url": url }))
     }
 
     /// Waits for an answer from somebody else, who may see whether it is still wanted.
@@ -326,6 +340,7 @@ impl Server {
             cancelled.store(true, Ordering::Relaxed);
             self.count -= 1;
             self.renders.forget(&id);
+            self.previews.wanted(&id);
             self.send(id, Err(Failure::cancelled()));
         }
     }
@@ -337,79 +352,20 @@ impl Server {
         }
     }
 
-    fn change_folders(&mut self, event: &lsp::WorkspaceFoldersChangeEvent) {
-        let paths = |folders: &[lsp::WorkspaceFolder]| -> Vec<PathBuf> {
-            folders.iter().filter_map(|folder| path_of(folder.uri.as_ref())).collect()
-        };
-        let (added, removed) = (paths(&event.added), paths(&event.removed));
-        let folders = &mut Arc::make_mut(&mut self.view).folders;
-        folders.retain(|folder| !removed.contains(folder) && !added.contains(folder));
-        folders.extend(added);
-        self.touch_all();
-    }
-
-    fn close(&mut self, key: &Key) {
-        Arc::make_mut(&mut self.view).documents.close(key);
-        self.reads.forget(key);
-        for told in self.board.close(key, &self.view) {
-            self.publish(told);
-        }
-        // Those that import it read what is saved from now on.
-        self.changed_at(vec![key.clone()]);
-    }
-
-    /// Open documents have other texts: they and those that are made of them mean something else.
-    fn changed_at(&mut self, keys: Vec<Key>) {
-        self.note(&keys, self.view.documents.stamp());
-        let users = self.spoil(self.reads.users(&keys));
-        let open = keys.into_iter().filter(|key| self.view.documents.get(key).is_some());
-        let looked: Vec<Key> = open.chain(users).collect();
-        self.desk.look(looked, &self.view);
-        self.previews.follow(&self.view);
-    }
-
-    /// Saved files have changed: only those mean something else that read them there.
-    fn saved_at(&mut self, keys: Vec<Key>) {
-        let open = |key: &Key| self.view.documents.get(key).is_some();
-        let keys: Vec<Key> = keys.into_iter().filter(|key| !open(key)).collect();
-        self.note(&keys, self.view.documents.stamp() + 1);
-        self.touch(self.reads.users(&keys));
-    }
-
-    /// Keeps when files changed, or looks at everything again.
-    fn note(&mut self, keys: &[Key], stamp: u64) {
-        if !self.reads.note(keys, stamp) {
-            self.touch_all();
-        }
-    }
-
-    fn touch_all(&mut self) {
-        self.touch(self.view.documents.iter().map(|(key, _)| key.clone()).collect());
-    }
-
-    /// Open documents mean something else.
-    fn touch(&mut self, keys: Vec<Key>) {
-        if keys.is_empty() {
-            return;
-        }
-        let open = self.spoil(keys);
-        self.desk.look(open, &self.view);
-    }
-
-    /// What is known of documents is out of date, though the client has not edited them. Those that are open.
-    fn spoil(&mut self, keys: Vec<Key>) -> Vec<Key> {
-        let documents = &mut Arc::make_mut(&mut self.view).documents;
-        let open: Vec<Key> = keys.into_iter().filter(|key| documents.touch(key)).collect();
-        self.reads.spoil(&open);
-        open
-    }
-
     fn hear(&mut self, told: Told) {
         match told {
-            Told::Answered(id, answer) => self.finish(id, answer),
+            Told::Answered(id, answer) => {
+                let answer = match self.previews.wanted(&id) {
+                    Some(order) => {
+                        answer.and_then(|_| guarded(|| self.preview(&order)).and_then(|answer| answer))
+                    }
+                    None => answer,
+                };
+                self.finish(id, answer);
+            }
             Told::Changed => self.saved_at(self.reads.files().into_iter().cloned().collect()),
             Told::Notifies(method, params) => self.notify(method, params),
-            Told::Asks(method, params) => self.ask_client(method, params),
+            Told::Asks(ask) => self.ask_client(ask),
             Told::Looked { key, view, reads, found } => {
                 let seen = view.documents.get(&key).map(|document| document.stamp);
                 let now = self.view.documents.get(&key).map(|document| document.stamp);
@@ -440,7 +396,7 @@ impl Server {
             (refreshes_tokens, lsp::LspRequestMethod::WorkspaceSemanticTokensRefresh),
         ] {
             if can {
-                self.ask_client(method.as_str().into(), Value::Null);
+                self.ask_client(Ask::new(method, Value::Null));
             }
         }
     }
@@ -453,12 +409,12 @@ impl Server {
             self.watcher = Watcher::new(None, move || drop(tell.try_send(Told::Changed))).ok();
             return;
         }
-        self.ask_client(lsp::LspRequestMethod::ClientRegisterCapability.as_str().into(), watched());
+        self.ask_client(Ask::new(lsp::LspRequestMethod::ClientRegisterCapability, json!(watched())));
     }
 
-    /// Asks the client something whose answer makes no difference.
-    fn ask_client(&mut self, method: String, params: impl serde::Serialize) {
-        let request = self.waiting.outgoing.register(method, params, ());
+    /// Asks the client something.
+    fn ask_client(&mut self, Ask { method, params, agreed }: Ask) {
+        let request = self.waiting.outgoing.register(method, params, agreed);
         let _ = self.connection.sender.send(request.into());
     }
 

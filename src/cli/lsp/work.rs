@@ -10,7 +10,7 @@ use super::documents::{Document, Key};
 use super::requests::{Lane, Run};
 use super::view::View;
 use crossbeam_channel::Sender;
-use gen_lsp_types::Uri;
+use gen_lsp_types::{LspRequestMethod, Uri};
 use lsp_server::{ErrorCode, RequestId};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
@@ -74,8 +74,8 @@ pub enum Told {
     Changed,
     /// Something for the client, by method and parameters.
     Notifies(String, Value),
-    /// A question for the client, whose answer makes no difference.
-    Asks(String, Value),
+    /// A question for the client.
+    Asks(Ask),
     /// A document was looked at.
     Looked {
         /// Which.
@@ -87,6 +87,23 @@ pub enum Told {
         /// What is said of them.
         found: Found,
     },
+}
+
+/// A question for the client. What it answers makes no difference, but whether it agrees may.
+pub struct Ask {
+    /// The request.
+    pub method: String,
+    /// Its parameters.
+    pub params: Value,
+    /// Set by an answer that is no error.
+    pub agreed: Arc<AtomicBool>,
+}
+
+impl Ask {
+    /// One whose answer nobody waits for.
+    pub fn new(method: LspRequestMethod, params: Value) -> Ask {
+        Ask { method: method.as_str().into(), params, agreed: Arc::default() }
+    }
 }
 
 /// Where questions wait.

@@ -58,8 +58,8 @@ fn imports_are_read_from_open_documents_first() {
     client.open("woods.rt", "material oak = diffuse { color: 8mm }\n");
     assert_eq!(client.codes("woods.rt", Some(1)), ["E0205"]);
     client.replace("woods.rt", 2, "material elm = diffuse { color: #705848 }\n");
-    // By itself it shows nothing; what the scene found in the first text is no more so.
-    assert_eq!(client.codes("woods.rt", Some(2)), ["E0302", "W0106"]);
+    // What the scene found in the first text is no more so; and it is no scene of its own, in which something is to stand.
+    assert_eq!(client.codes("woods.rt", Some(2)), Vec::<String>::new());
     assert_eq!(client.codes("scene.rt", Some(1)), ["E0101"]);
     client.replace("woods.rt", 3, "material oak = diffuse { color: #705848 }\n");
     assert_eq!(client.codes("scene.rt", Some(1)), Vec::<String>::new());
@@ -69,6 +69,23 @@ fn imports_are_read_from_open_documents_first() {
     let document = document(&client, "woods.rt");
     client.tell("textDocument/didClose", document);
     assert_eq!(client.codes("scene.rt", Some(1)), Vec::<String>::new());
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn what_another_text_imports_is_no_scene_of_its_own() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    let woods = "material oak = diffuse { color: #705848 }\npart stool {\n  let seat = 45cm\n  sphere { radius: 1m }\n}\n";
+    desk.put("woods.rt", woods);
+    client.open("woods.rt", woods);
+    assert_eq!(client.codes("woods.rt", Some(1)), ["E0302", "W0106", "W0106", "W0106"]);
+    // What is not used within stays so.
+    client.open("scene.rt", "import \"woods.rt\" as woods\nsphere { radius: 1m, material: woods.oak }\n");
+    assert_eq!(client.codes("woods.rt", Some(1)), ["W0106"]);
+    let document = document(&client, "scene.rt");
+    client.tell("textDocument/didClose", document);
+    assert_eq!(client.codes("woods.rt", Some(1)), ["E0302", "W0106", "W0106", "W0106"]);
     assert_eq!(client.end(), Some(0));
 }
 
@@ -154,7 +171,7 @@ fn an_edit_that_makes_no_sense_leaves_no_wrong_text() {
     params["options"] = json!({ "tabSize": 2, "insertSpaces": true });
     client.ask("textDocument/formatting", params).unwrap_err();
     client.replace("woods.rt", 3, woods);
-    assert_eq!(client.codes("woods.rt", Some(3)), ["E0302", "W0106"]);
+    assert_eq!(client.codes("woods.rt", Some(3)), Vec::<String>::new());
     assert_eq!(client.codes("scene.rt", Some(1)), Vec::<String>::new());
     assert_eq!(client.end(), Some(0));
 }
@@ -179,7 +196,6 @@ fn a_picture_is_made_of_what_is_not_saved() {
     let made = client.ask("workspace/executeCommand", json!({ "command": "rtc.render", "arguments": about }));
     assert!(made.unwrap()["path"].as_str().unwrap().ends_with("ball.png"));
     assert_eq!(super::super::read_png(&desk.get("ball.png")).0, [24, 18]);
-    client.wait("progress", |message| message["params"]["value"]["kind"] == "end");
     client.replace("ball.rt", 2, "sphere { radius: 8deg }\n");
     let refused =
         client.ask("workspace/executeCommand", json!({ "command": "rtc.render", "arguments": about }));
@@ -198,12 +214,51 @@ fn a_picture_that_is_being_made_can_be_cancelled_where_its_progress_is_shown() {
     let arguments = json!([client.uri("ball.rt")]);
     let asked =
         client.begin("workspace/executeCommand", json!({ "command": "rtc.render", "arguments": arguments }));
-    let begun = client.wait("progress", |message| message["params"]["value"]["kind"] == "begin");
+    let begun = client.wait("progress", begins);
     assert_eq!(begun["params"]["value"]["cancellable"], true);
+    client.wait("progress", |message| message["params"]["value"]["kind"] == "report");
     client.tell("window/workDoneProgress/cancel", json!({ "token": begun["params"]["token"] }));
     assert_eq!(client.answer(&json!(asked)).unwrap_err()["code"], -32800);
     client.wait("progress", |message| message["params"]["value"]["kind"] == "end");
     assert!(!desk.path("ball.png").exists());
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn progress_is_told_of_once_the_client_has_agreed_to_it() {
+    let desk = Desk::new();
+    let mut client = Client::with(&desk, json!({ "window": { "workDoneProgress": true } }));
+    client.agrees = false;
+    client.open("a.rt", ENDLESS);
+    let is_create = |message: &Value| message["method"] == "window/workDoneProgress/create";
+    let is_progress = |message: &Value| message["method"] == "$/progress";
+    let end = |client: &mut Client, asked: i32| {
+        client.tell("$/cancelRequest", json!({ "id": asked }));
+        assert_eq!(client.answer(&json!(asked)).unwrap_err()["code"], -32800);
+    };
+    let asked = render(&mut client, "a.rt");
+    let create = client.wait("a token", is_create);
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    assert!(!client.has(is_progress), "nobody has agreed");
+    client.agree(&create);
+    let begun = client.wait("progress", is_progress);
+    assert_eq!(
+        (&begun["params"]["token"], &begun["params"]["value"]["kind"]),
+        (&create["params"]["token"], &json!("begin"))
+    );
+    end(&mut client, asked);
+    client.wait("progress", |message| message["params"]["value"]["kind"] == "end");
+    // One who refuses hears nothing.
+    while client.has(is_progress) {
+        client.wait("progress", is_progress);
+    }
+    let asked = render(&mut client, "a.rt");
+    let create = client.wait("a token", is_create);
+    let error = json!({ "code": -32603, "message": "no" });
+    client.send(&json!({ "jsonrpc": "2.0", "id": create["id"], "error": error }));
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    end(&mut client, asked);
+    assert!(!client.has(is_progress), "it was refused");
     assert_eq!(client.end(), Some(0));
 }
 
