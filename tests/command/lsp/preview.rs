@@ -186,9 +186,11 @@ fn a_preview_ends_with_its_document() {
     }
     let document = json!({ "uri": client.uri("scene.rt") });
     client.tell("textDocument/didClose", json!({ "textDocument": document }));
+    // Those that all share may have come meanwhile.
+    let most = before + std::thread::available_parallelism().unwrap().get() as u64;
     let begin = Instant::now();
-    while client.threads() > before {
-        assert!(begin.elapsed() < PATIENCE, "{} of {before} threads", client.threads());
+    while client.threads() > most {
+        assert!(begin.elapsed() < PATIENCE, "{} threads, {before} before", client.threads());
         std::thread::sleep(Duration::from_millis(10));
     }
     assert_eq!(client.end(), Some(0));
