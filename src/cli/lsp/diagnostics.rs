@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The most that is told of one file: nobody reads more, and there may be as many as characters.
 const MOST: usize = 1_000;
 
-/// What is said of each file of an analysis: of the document itself, and of the texts it imports, also where it is nothing.
+/// What is said of each file of an analysis: of the document itself, and of what it reads, also where it is nothing.
 pub type Found = BTreeMap<Key, Said>;
 
 /// What is said of a file.
@@ -49,9 +49,8 @@ pub fn found(meaning: &Meaning, key: &Key, view: &View) -> Found {
     if !is_known {
         return found;
     }
-    for (id, _) in meaning.analysis.files() {
-        let file = meaning.key(id);
-        found.entry(file.clone()).or_insert_with(|| Said::new(view, &file));
+    for file in &meaning.reads {
+        found.entry(file.clone()).or_insert_with(|| Said::new(view, file));
     }
     let alone = meaning.analysis.alone();
     let mut more: BTreeMap<Key, usize> = BTreeMap::new();
