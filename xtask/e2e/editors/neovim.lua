@@ -12,7 +12,8 @@ material paint = diffuse { color: #d94f30 }
 sphere ball { at: (0, size, 0), radius: size, material: paint }
 plane {}
 light {
-  at: (2, 3, 2)m, power: 60W
+  at: (2, 3, 2)m
+  power: 60W
 }
 camera { from: (0, 1, 4)m, look: ball }
 ]]
@@ -239,7 +240,7 @@ step('the live preview serves the text, saved or not', function()
   vim.lsp.codelens.refresh({ bufnr = 0 })
   wait('something stands above the camera', function()
     return vim.iter(vim.lsp.codelens.get(0)):any(function(lens)
-      return lens.range.start.line == 8
+      return lens.range.start.line == 9
     end)
   end)
   vim.ui.select = function(offered, about, choose)
