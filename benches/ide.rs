@@ -154,7 +154,7 @@ fn signature_of_a_part(bencher: Bencher) {
 fn tokens(bencher: Bencher) {
     let text = written();
     let analysis = analysed(&Desk::default(), &text);
-    bencher.bench(|| analysis.tokens(0..text.len()));
+    bencher.bench(|| analysis.tokens(0..text.len(), &|| false));
 }
 
 #[divan::bench]
@@ -174,8 +174,8 @@ fn the_rest(bencher: Bencher) {
         (
             analysis.symbols(),
             analysis.folds(),
-            analysis.hints(all.clone()),
-            analysis.colours(),
+            analysis.hints(all.clone(), &|| false),
+            analysis.colours(&|| false),
             analysis.lenses(),
         )
     });

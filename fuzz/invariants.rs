@@ -72,9 +72,9 @@ pub fn ask(text: &str) {
     }
     found.symbols();
     found.folds();
-    found.tokens(all.clone());
-    found.colours();
-    found.hints(all.clone());
+    found.tokens(all.clone(), &|| false);
+    found.colours(&|| false);
+    found.hints(all.clone(), &|| false);
     found.format(all.clone());
     found.links();
     found.lenses();

@@ -118,6 +118,15 @@ pub struct Fix {
     pub edits: Vec<(Span, String)>,
 }
 
+/// One of several edits that would mend the slip: which is meant only the writer knows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Offer {
+    /// What it does, as an imperative sentence without a capital or a full stop.
+    pub title: String,
+    /// The edits.
+    pub fix: Fix,
+}
+
 /// A use of a group, part, function or prototype, or a turn of a loop.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Use {
@@ -148,6 +157,8 @@ pub struct Diagnostic {
     pub help: Option<String>,
     /// The mend as an edit, where it can be applied blindly.
     pub fix: Option<Fix>,
+    /// Mends to choose from, where none can be applied blindly: for who is asked, as in an editor.
+    pub offers: Vec<Offer>,
     /// The uses that led to the place, outermost first.
     pub uses: Vec<Use>,
 }
@@ -163,6 +174,7 @@ impl Diagnostic {
             labels: vec![],
             help: None,
             fix: None,
+            offers: vec![],
             uses: vec![],
         }
     }
@@ -198,10 +210,17 @@ impl Diagnostic {
         self
     }
 
+    /// Adds a mend to choose: each span is replaced by its text.
+    pub fn offer(mut self, title: impl Into<String>, edits: Vec<(Span, String)>) -> Diagnostic {
+        self.offers.push(Offer { title: title.into(), fix: Fix { edits } });
+        self
+    }
+
     /// Moves all that it points at.
     pub fn move_places(&mut self, moved: impl Fn(Span) -> Span) {
         let labels = self.labels.iter_mut().chain([&mut self.primary]).map(|label| &mut label.span);
-        let edits = self.fix.iter_mut().flat_map(|fix| &mut fix.edits).map(|(span, _)| span);
+        let offered = self.offers.iter_mut().map(|offer| &mut offer.fix);
+        let edits = self.fix.iter_mut().chain(offered).flat_map(|fix| &mut fix.edits).map(|(span, _)| span);
         let uses = self.uses.iter_mut().map(|used| &mut used.span);
         labels.chain(edits).chain(uses).for_each(|span| *span = moved(*span));
     }

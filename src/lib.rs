@@ -133,8 +133,9 @@ pub fn analyse(files: &dyn Files, main: Source, options: &Options, stop: Stop) -
     let mut sources = Sources::default();
     let main = sources.add(main);
     let (compiled, study) = run(files, &mut sources, main, options, Some(stop));
-    let Compiled { diagnostics, notes, .. } = compiled;
-    (!stop()).then(|| Analysis::new(sources, main, diagnostics, notes, study))
+    let Compiled { diagnostics, notes, inventory, .. } = compiled;
+    let cameras = inventory.cameras.into_iter().flatten().collect();
+    (!stop()).then(|| Analysis::new(sources, main, diagnostics, notes, Study { cameras, ..study }))
 }
 
 /// Runs all stages. `stop` is asked only by who keeps what is learnt.
@@ -215,7 +216,7 @@ impl World<'_> {
             let others = lowered.others.iter().map(|(camera, marks)| (*camera, marks.camera));
             let written =
                 taken.into_iter().chain(others).filter_map(|(camera, place)| Some((camera, place?)));
-            study.cameras = written.collect();
+            study.views = written.collect();
         }
         if self.is_stopped() {
             return (Compiled::unfinished(main), study);

@@ -138,6 +138,27 @@ pub const UNITS: &[(&str, Unit)] = &[
     ("%", Unit { dim: NONE, factor: 0.01 }),
 ];
 
+/// The words of units that are written short.
+const SPELT_OUT: &[(&str, &[&str])] = &[
+    ("m", &["meter", "meters", "metre", "metres"]),
+    ("cm", &["centimeter", "centimeters", "centimetre", "centimetres"]),
+    ("mm", &["millimeter", "millimeters", "millimetre", "millimetres"]),
+    ("km", &["kilometer", "kilometers", "kilometre", "kilometres"]),
+    ("in", &["inch", "inches"]),
+    ("ft", &["foot", "feet"]),
+    ("deg", &["degree", "degrees"]),
+    ("rad", &["radian", "radians"]),
+    ("turn", &["turns"]),
+    ("W", &["watt", "watts", "Watt", "Watts"]),
+    ("K", &["kelvin", "kelvins", "Kelvin"]),
+    ("%", &["percent"]),
+];
+
+/// The unit that a word means: `metres` is `m`.
+pub fn spelt_out(word: &str) -> Option<&'static str> {
+    SPELT_OUT.iter().find(|(_, words)| words.contains(&word)).map(|(unit, _)| *unit)
+}
+
 /// Whether this bare word is a unit's name, which therefore cannot be declared.
 pub fn is_unit(name: &str) -> bool {
     UNITS.iter().any(|(unit, _)| *unit == name)

@@ -99,6 +99,40 @@ fn what_is_offered_as_a_mend_mends() {
     assert!(mended > 10, "{mended} cases were mended");
 }
 
+/// Every mend that one may choose ends its message, and nothing becomes unreadable by it.
+#[test]
+fn what_is_offered_to_choose_from_mends() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases");
+    let (mut wrong, mut mended) = (vec![], 0);
+    for entry in
+        ["diagnostics", "syntax", "ide"].iter().flat_map(|folder| root.join(folder).read_dir().unwrap())
+    {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|extension| extension != "rt") {
+            continue;
+        }
+        let below = path.strip_prefix(&root).unwrap().to_str().unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let before = given(below, &text);
+        for diagnostic in &before {
+            for offer in &diagnostic.offers {
+                let chosen = Diagnostic { fix: Some(offer.fix.clone()), ..diagnostic.clone() };
+                let Some(next) = mend(&text, SourceId(0), &[chosen]) else { continue };
+                let after = given(below, &next.text);
+                let same = |all: &[Diagnostic]| all.iter().filter(|d| d.code == diagnostic.code).count();
+                let slips =
+                    |all: &[Diagnostic]| all.iter().filter(|d| d.code.as_str().starts_with("E00")).count();
+                if same(&after) >= same(&before) || slips(&after) > slips(&before) {
+                    wrong.push(format!("{below}: `{}` gives\n{}", offer.title, next.text));
+                }
+                mended += 1;
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(mended > 10, "{mended} mends were chosen");
+}
+
 /// What is said of a text that stands in place of a case. `below` is its path among the cases, which share files.
 fn given(below: &str, text: &str) -> Vec<Diagnostic> {
     let mut sources = Sources::default();

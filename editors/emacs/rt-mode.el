@@ -88,7 +88,7 @@
 
 (defun rt--goes-on-p ()
   "Whether the line at point goes on with the one before."
-  (looking-at-p "[ \t]*\\(?:|>\\|->\\|[*+<>]\\|[=!]=\\|\\.[[:alpha:]_]\\|\\(?:and\\|or\\|to\\|then\\)\\_>\\|else\\_>[ \t]*[^ \t\n{i]\\)"))
+  (looking-at-p "[ \t]*\\(?:|>\\|->\\|[*+<>]\\|/\\(?:[^/*]\\|$\\)\\|[=!]=\\|\\.[[:alpha:]_]\\|\\(?:and\\|or\\|to\\|then\\)\\_>\\|else\\_>[ \t]*[^ \t\n{i]\\)"))
 
 (defun rt-indent-line ()
   "Indent the line at point.

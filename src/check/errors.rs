@@ -34,6 +34,13 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
     let same_start = |guess: &Guess| {
         what != "unit" || guess.name.chars().next() == start || guess.name == name.text.to_lowercase()
     };
+    if let Some(word) = written_as(what, &name.text) {
+        return diagnostic.help(format!("write `{word}`")).fix(name.span, word);
+    }
+    if (what, name.text.as_str()) == ("unit", "M") {
+        // A million may be meant.
+        return diagnostic.help("metres are written `m`").offer("write `m`", vec![(name.span, "m".into())]);
+    }
     if let Some(help) = said_otherwise(what, &name.text) {
         return diagnostic.help(help);
     }
@@ -63,6 +70,16 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
     }
 }
 
+/// The word that a name certainly means.
+fn written_as(what: &str, name: &str) -> Option<&'static str> {
+    match (what, name) {
+        ("name", "yes" | "on" | "True" | "TRUE") => Some("true"),
+        ("name", "no" | "off" | "False" | "FALSE") => Some("false"),
+        ("unit", _) => units::spelt_out(name),
+        _ => None,
+    }
+}
+
 /// How one says here what a name means elsewhere, or at another place.
 fn said_otherwise(what: &str, name: &str) -> Option<String> {
     let kind = || schema::kind(name).is_some();
@@ -71,8 +88,6 @@ fn said_otherwise(what: &str, name: &str) -> Option<String> {
             format!("`{name}` is a kind, and makes something with its fields in braces: `{name} {{ … }}`")
         }
         ("name", "pi" | "PI" | "Pi") => "half a turn is `180deg`, and as a number `180deg / 1rad`".into(),
-        ("name", "yes" | "on" | "True" | "TRUE") => "write `true`".into(),
-        ("name", "no" | "off" | "False" | "FALSE") => "write `false`".into(),
         ("name", "f") => {
             "an f-number is the number alone: `stop: 2.8`; any other value is declared: `let f = …`".into()
         }
@@ -90,8 +105,6 @@ fn said_otherwise(what: &str, name: &str) -> Option<String> {
         ("function", "lerp") => "`mix(a, b, t)` lies between two values".into(),
         ("kind", "new") => "leave it out: a thing begins with its kind: `sphere { … }`".into(),
         ("kind", "while") => "`for` repeats: `for i in range(7) { … }`".into(),
-        ("unit", "meter" | "metre" | "meters" | "metres" | "M") => "metres are written `m`".into(),
-        ("unit", "degree" | "degrees") => "degrees are written `deg`".into(),
         ("unit", "px" | "pixel" | "pixels") => "a number of pixels has no unit".into(),
         _ => return None,
     })

@@ -5,8 +5,7 @@ use super::program::{FieldPlace, PartId};
 use super::types::{Kind, Type};
 use super::{Checker, errors};
 use crate::schema::{PLACED, familiar};
-use crate::span::Span;
-use crate::syntax::ast::Name;
+use crate::syntax::ast::{self, Entry, Name};
 
 impl Checker<'_> {
     /// The field of a kind with this name.
@@ -88,19 +87,33 @@ impl Checker<'_> {
         }
     }
 
-    /// `told` is where the last one of this body was reported whose way to write it here takes in several: `min` and
-    /// `max`, which are one slip.
-    pub(super) fn unknown_field(
-        &mut self,
+    /// Which fields a body gives by their own names.
+    pub(super) fn named(
+        &self,
         kind: Kind,
-        name: &Name,
-        places: &[Option<Span>],
-        told: &mut Option<usize>,
-    ) {
+        entries: &[Entry],
+        parts: &[(usize, &ast::Construct)],
+    ) -> Vec<bool> {
+        let mut named = vec![false; self.field_count(kind)];
+        for entry in entries {
+            if let Entry::Field(ast::Field { name, .. }) | Entry::Broken(ast::Broken { name: Some(name), .. }) =
+                entry
+                && let Some(field) = self.find_field(kind, &name.text)
+            {
+                named[self.bit(kind, field)] = true;
+            }
+        }
+        parts.iter().for_each(|(index, _)| named[*index] = true);
+        named
+    }
+
+    /// `free` says of each field whether the body may still give it. `told` is where the last one of this body was reported
+    /// whose way to write it here takes in several: `min` and `max`, which are one slip.
+    pub(super) fn unknown_field(&mut self, kind: Kind, name: &Name, free: &[bool], told: &mut Option<usize>) {
         let all = self.field_names(kind);
         let all: Vec<&str> = all.iter().map(String::as_str).collect();
         let free: Vec<&str> =
-            all.iter().zip(places).filter(|(_, place)| place.is_none()).map(|(name, _)| *name).collect();
+            all.iter().zip(free).filter(|(_, free)| **free).map(|(name, _)| *name).collect();
         let kind_name = self.kind_name(kind);
         let diagnostic = errors::unknown_field(&kind_name, kind.category(), name, &free, &all);
         let joined =
@@ -119,15 +132,11 @@ impl Checker<'_> {
         &self,
         kind: Kind,
         name: &Name,
-        places: &[Option<Span>],
+        free: &[bool],
     ) -> Option<(FieldPlace, bool)> {
         let all = self.field_names(kind);
-        let free: Vec<&str> = all
-            .iter()
-            .zip(places)
-            .filter(|(_, place)| place.is_none())
-            .map(|(name, _)| name.as_str())
-            .collect();
+        let free: Vec<&str> =
+            all.iter().zip(free).filter(|(_, free)| **free).map(|(name, _)| name.as_str()).collect();
         let here = familiar::field(&self.kind_name(kind), kind.category(), &name.text);
         let here = here.and_then(|here| Some((here.name?, here.same_value)));
         let here = here.filter(|(name, _)| free.contains(name));

@@ -206,8 +206,8 @@ impl Checker<'_> {
         let mut told = None;
         // Where a field stands of which nothing is known.
         let mut foreign = None;
-        // Those that are only taken to be meant by another name.
-        let mut guessed = vec![false; places.len()];
+        // What another name cannot have meant, also where it stands before: found out where there is such a name.
+        let mut named = None;
         for entry in entries {
             let (name, value) = match entry {
                 Entry::Field(field) => (&field.name, Some(&field.value)),
@@ -215,15 +215,16 @@ impl Checker<'_> {
                 _ => continue,
             };
             let Some(field) = self.find_field(kind, &name.text) else {
+                let named = named.get_or_insert_with(|| self.named(kind, entries, parts));
+                let both = places.iter().zip(named.iter());
+                let free: Vec<bool> = both.map(|(place, named)| place.is_none() && !named).collect();
                 if value.is_some() {
-                    self.unknown_field(kind, name, &places, &mut told);
+                    self.unknown_field(kind, name, &free, &mut told);
                 }
                 // A misspelt field counts as given.
                 let mut meant = None;
-                if let Some((field, certain)) = self.probable_field(kind, name, &places) {
-                    let bit = self.bit(kind, field);
-                    places[bit] = Some(name.span);
-                    guessed[bit] = true;
+                if let Some((field, certain)) = self.probable_field(kind, name, &free) {
+                    places[self.bit(kind, field)] = Some(name.span);
                     make.fields.push((field, Expr::invalid(name.span)));
                     meant = Some(field).filter(|_| certain);
                 } else {
@@ -239,10 +240,7 @@ impl Checker<'_> {
             };
             self.note(name.span, self.meaning(kind, field));
             let bit = self.bit(kind, field);
-            if std::mem::take(&mut guessed[bit]) {
-                // The one before was something else, which was reported.
-                make.fields.retain(|(given, _)| *given != field);
-            } else if let Some(first) = places[bit] {
+            if let Some(first) = places[bit] {
                 self.report(errors::repeated(name, first));
                 if let Some(value) = value {
                     self.value_of_field(kind, field, value);

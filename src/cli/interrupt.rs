@@ -14,7 +14,7 @@ use std::time::Duration;
 const GRACE: Duration = Duration::from_millis(40);
 
 /// Whether the process is asked to end, and what to tidy up then.
-#[derive(Clone, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Interrupt {
     /// The render that is to stop first.
     control: Arc<Mutex<Option<Arc<Control>>>>,
@@ -78,7 +78,7 @@ impl Interrupt {
         }
     }
 
-    /// Makes a file that is removed should the process be asked to end before [`Interrupt::settle`].
+    /// Makes a file or a folder that is removed should the process be asked to end before [`Interrupt::settle`].
     pub fn create<T>(&self, make: impl FnOnce() -> io::Result<(T, PathBuf)>) -> io::Result<T> {
         let mut unfinished = lock(&self.unfinished);
         let (made, path) = make()?;
@@ -92,6 +92,15 @@ impl Interrupt {
         let finished = finish();
         unfinished.remove(path);
         finished
+    }
+
+    /// Removes what is unfinished where the process ends by itself while others are at work: from here on nobody makes a file
+    /// or gives one its place.
+    pub fn close(&self) {
+        let unfinished = lock(&self.unfinished);
+        remove(&unfinished);
+        // Held until the process is gone.
+        std::mem::forget(unfinished);
     }
 
     fn end(&self, terminal: Terminal) {
@@ -112,15 +121,20 @@ impl Interrupt {
     fn leave(&self, terminal: Terminal) -> ! {
         // Held until the process is gone, so that nobody makes or moves a file from here on.
         let unfinished = lock(&self.unfinished);
-        for path in unfinished.iter() {
-            let _ = std::fs::remove_file(path);
-        }
+        remove(&unfinished);
         if terminal.interactive {
             // Past the progress bar.
             terminal.line("");
         }
         terminal.line("interrupted");
         std::process::exit(Exit::Interrupted as i32);
+    }
+}
+
+/// Removes files, and folders with what is in them, as far as they are there.
+fn remove(paths: &BTreeSet<PathBuf>) {
+    for path in paths {
+        let _ = if path.is_dir() { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) };
     }
 }
 

@@ -49,7 +49,8 @@ pub struct Hover {
     pub value: Option<String>,
     /// Words about it, as Markdown; may be empty.
     pub doc: String,
-    /// The colour it is, display-referred: red, green and blue from 0 to 1.
+    /// The colour it is, display-referred: red, green and blue from 0 to 1. What is brighter than white is shown darker, in
+    /// its hue.
     pub colour: Option<[f64; 3]>,
 }
 
@@ -275,7 +276,7 @@ impl TokenKind {
 pub struct Colour {
     /// Where.
     pub span: Span,
-    /// Display-referred: red, green and blue from 0 to 1. What lies outside is cut.
+    /// Display-referred: red, green and blue from 0 to 1. What is brighter than white is shown darker, in its hue.
     pub value: [f64; 3],
 }
 
@@ -319,7 +320,7 @@ pub enum LensAction {
     Render,
 }
 
-/// A mend that needs no thought.
+/// A mend of a slip, or words that silence a warning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fix {
     /// What it does, as an imperative sentence.
@@ -328,6 +329,6 @@ pub struct Fix {
     pub diagnostic: usize,
     /// The edits, which do not overlap.
     pub edits: Vec<Edit>,
-    /// Whether it mends the slip; else it silences a warning.
+    /// Whether it is the one mend of the slip; else it is to be chosen from several, or silences a warning.
     pub mends: bool,
 }

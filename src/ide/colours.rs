@@ -1,18 +1,20 @@
 //! Colours as they are written, and how another would be.
 
 use super::walk::Piece;
-use super::{Analysis, Colour, say};
+use super::{Analysis, Colour, Stop, say};
 use crate::check::{Function, Meaning};
 use crate::color;
 use crate::eval::Seen;
 use crate::math::DVec3;
+use crate::span::Span;
 use crate::syntax::ast::{Argument, Expr, ExprKind};
+use std::ops::Range;
 
 /// The colours that are written in the text: with `#`, by a built-in name, or as numbers.
-pub(super) fn colours(analysis: &Analysis) -> Vec<Colour> {
+pub(super) fn colours(analysis: &Analysis, stop: Stop) -> Vec<Colour> {
     let mut found = vec![];
     let all = 0..analysis.source().text.len();
-    analysis.walk(analysis.main, all, &mut |piece| {
+    analysis.walk_until(analysis.main, all, stop, &mut |piece| {
         let Piece::Expr(expr) = piece else { return };
         let color = match &expr.kind {
             ExprKind::Color(digits) => color::from_hex(digits),
@@ -34,10 +36,7 @@ pub(super) fn colours(analysis: &Analysis) -> Vec<Colour> {
         _ => None,
     });
     let blackbodies = computed.filter(|(span, _)| analysis.sources.text(*span).starts_with("blackbody("));
-    found.extend(blackbodies.map(|(span, color)| {
-        // Its luminance is 1, which would be cut.
-        Colour { span, value: say::displayed(color / color.max_element().max(1.0)) }
-    }));
+    found.extend(blackbodies.map(|(span, color)| Colour { span, value: say::displayed(color) }));
     found.sort_by_key(|colour| colour.span);
     found
 }
@@ -65,9 +64,22 @@ fn number(value: &Expr) -> Option<f64> {
     }
 }
 
-/// The ways to write a colour in place of the one that stands there as `written`, each to replace all of it: in its own form first.
-/// Red, green and blue are display-referred, from 0 to 1.
-pub fn present(written: &str, value: [f64; 3]) -> Vec<String> {
+/// The ways to write a colour in place of the one in a part of the text.
+pub(super) fn present(analysis: &Analysis, range: Range<usize>, value: [f64; 3]) -> Vec<String> {
+    let written = analysis.source().text.get(range.clone()).unwrap_or("");
+    let place = Span::new(analysis.main, range.start, range.start);
+    // What a file declares hides the built-in colour of that name.
+    let is_hidden = |name: &str| {
+        let mut seen = analysis.study.notes.scopes.iter().filter(|scope| scope.span.contains(place));
+        seen.any(|scope| scope.names.iter().any(|(known, ..)| known == name))
+    };
+    let mut ways = ways(written, value);
+    ways.retain(|way| color::named(way).is_none() || !is_hidden(way));
+    ways
+}
+
+/// The ways to write a colour in place of the one that stands there as `written`.
+fn ways(written: &str, value: [f64; 3]) -> Vec<String> {
     let value = value.map(|x| if x.is_finite() { x.clamp(0.0, 1.0) } else { 0.0 });
     let short = |x: f64| say::number((x * 1e4).round() / 1e4);
     let triple =
@@ -117,11 +129,11 @@ mod tests {
 
     #[test]
     fn a_colour_is_written_in_its_own_form_first() {
-        assert_eq!(present("#fff", [1.0, 0.0, 0.0])[0], "#ff0000");
-        assert_eq!(present("srgb(1, 1, 1)", [1.0, 0.0, 0.0])[0], "srgb(1, 0, 0)");
-        assert_eq!(present("hsv(0deg, 0, 0)", [0.0, 1.0, 0.0])[0], "hsv(120deg, 1, 1)");
-        assert_eq!(present("blue", [1.0, 0.0, 0.0])[0], "red");
-        assert_eq!(present("", [f64::NAN, 2.0, -1.0])[0], "#00ff00");
+        assert_eq!(ways("#fff", [1.0, 0.0, 0.0])[0], "#ff0000");
+        assert_eq!(ways("srgb(1, 1, 1)", [1.0, 0.0, 0.0])[0], "srgb(1, 0, 0)");
+        assert_eq!(ways("hsv(0deg, 0, 0)", [0.0, 1.0, 0.0])[0], "hsv(120deg, 1, 1)");
+        assert_eq!(ways("blue", [1.0, 0.0, 0.0])[0], "red");
+        assert_eq!(ways("", [f64::NAN, 2.0, -1.0])[0], "#00ff00");
     }
 
     #[test]

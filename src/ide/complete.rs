@@ -52,9 +52,32 @@ pub fn complete(
         }
     }
     let mut found = list.found;
+    let behind = source.text[cursor.word.end..].trim_start_matches([' ', '\t']);
+    for completion in &mut found {
+        if is_written(completion, behind) {
+            completion.insert = Insert { text: completion.label.clone(), holes: vec![] };
+        }
+    }
     found.sort_by(|a, b| (a.rank, &a.label).cmp(&(b.rank, &b.label)));
     found.dedup_by(|again, first| (again.kind, &again.label) == (first.kind, &first.label));
     found
+}
+
+/// Whether what a completion would put behind its label stands behind the cursor already.
+fn is_written(completion: &Completion, behind: &str) -> bool {
+    let Some(added) = completion.insert.text.strip_prefix(&completion.label) else { return false };
+    let begins = |text: &str| text.trim_start().chars().next();
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    match (begins(added), behind.chars().next()) {
+        (Some(added @ ('{' | ':' | '(')), Some(next)) if next == added => true,
+        // `sphere ball {`
+        (Some('{'), Some(next)) if is_word(next) => begins(behind.trim_start_matches(is_word)) == Some('{'),
+        // The rest of a statement.
+        (Some(added), Some(next)) if added.is_alphanumeric() || added == '"' => {
+            is_word(next) || matches!(next, '"' | '(')
+        }
+        _ => false,
+    }
 }
 
 /// How well something fits: the first fit best.

@@ -197,6 +197,12 @@ impl<'t> Cursor<'t> {
         self.entry.get(index).map_or("", |range| &self.text[range.clone()])
     }
 
+    /// Where the name stands that the entry declares, if it does.
+    pub(super) fn declares(&self) -> Option<usize> {
+        let declares = ["let", "material", "param", "fn", "for"].contains(&self.piece(0));
+        self.entry.get(1).filter(|_| declares).map(|name| name.start)
+    }
+
     /// What may stand at the word.
     fn find(&self, before: &[Piece]) -> Spot {
         if self.text[self.word.clone()].starts_with('@') {

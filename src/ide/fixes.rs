@@ -6,7 +6,8 @@ use crate::diagnostic::{Diagnostic, Severity};
 use crate::span::Span;
 use std::ops::Range;
 
-/// What can be mended in a part of the text, and the warnings there that can be allowed: mends first.
+/// What can be mended in a part of the text, and the warnings there that can be allowed: first what is certain, then what is
+/// to be chosen from.
 pub(super) fn fixes(analysis: &Analysis, range: Range<usize>) -> Vec<Fix> {
     let touches = |span: Span| {
         span.source == analysis.main && span.range().start <= range.end && range.start <= span.range().end
@@ -17,22 +18,35 @@ pub(super) fn fixes(analysis: &Analysis, range: Range<usize>) -> Vec<Fix> {
     };
     let here = || analysis.diagnostics.iter().enumerate().filter(|(_, diagnostic)| near(diagnostic));
     let mends = here().filter_map(|(index, diagnostic)| mend(analysis, index, diagnostic));
-    mends.chain(here().filter_map(|(index, diagnostic)| allow(analysis, index, diagnostic))).collect()
+    let offers = here().flat_map(|(index, diagnostic)| {
+        diagnostic.offers.iter().filter_map(move |offer| {
+            Some(Fix {
+                title: sentence(&offer.title),
+                diagnostic: index,
+                edits: edits(analysis, &offer.fix)?,
+                mends: false,
+            })
+        })
+    });
+    let allowed = here().filter_map(|(index, diagnostic)| allow(analysis, index, diagnostic));
+    mends.chain(offers).chain(allowed).collect()
 }
 
 /// The edit that a diagnostic offers.
 fn mend(analysis: &Analysis, index: usize, diagnostic: &Diagnostic) -> Option<Fix> {
     let fix = diagnostic.fix.as_ref().filter(|fix| !fix.edits.is_empty())?;
-    let edits: Option<Vec<Edit>> = fix
-        .edits
-        .iter()
-        .map(|(span, text)| Some(Edit { at: analysis.location(*span)?, text: text.clone() }))
-        .collect();
     let title = match &diagnostic.help {
         Some(help) => sentence(help),
         None => format!("Mend: {}", diagnostic.message),
     };
-    Some(Fix { title, diagnostic: index, edits: edits?, mends: true })
+    Some(Fix { title, diagnostic: index, edits: edits(analysis, fix)?, mends: true })
+}
+
+/// Edits by the paths of their files.
+fn edits(analysis: &Analysis, fix: &crate::diagnostic::Fix) -> Option<Vec<Edit>> {
+    let edit =
+        |(span, text): &(Span, String)| Some(Edit { at: analysis.location(*span)?, text: text.clone() });
+    fix.edits.iter().map(edit).collect()
 }
 
 /// What a help line asks for, as the name of a command.

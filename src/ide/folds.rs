@@ -1,9 +1,8 @@
-//! Lines that can be hidden, and the layout of some of them.
+//! Lines that can be hidden.
 
 use super::lex::{Lexeme, lex};
-use super::{Analysis, Edit, Fold, FoldKind, Location};
+use super::{Analysis, Fold, FoldKind};
 use crate::span::Span;
-use crate::syntax;
 use std::ops::Range;
 
 /// The bodies, comments and imports of more than one line, by where they begin.
@@ -65,45 +64,4 @@ fn is_next_line(text: &str, end: usize, start: usize) -> bool {
     let between = &text[end..start];
     between.bytes().all(|byte| byte.is_ascii_whitespace())
         && between.bytes().filter(|byte| *byte == b'\n').count() == 1
-}
-
-/// The edits that lay out a part of the text, line by line.
-pub(super) fn format(analysis: &Analysis, range: Range<usize>) -> Vec<Edit> {
-    let source = analysis.source();
-    let (formatted, _) = syntax::format(analysis.main, &source.text);
-    let edit = |(place, text): (Range<usize>, String)| Edit {
-        at: Location { path: source.path.clone(), range: place },
-        text,
-    };
-    differences(&source.text, &formatted)
-        .into_iter()
-        .filter(|(place, _)| place.start <= range.end && range.start <= place.end)
-        .map(edit)
-        .collect()
-}
-
-/// Longer texts are laid out as one: to compare them takes time with the square of their length.
-const MOST_LINES: usize = 20_000;
-
-/// The runs of lines in which two texts differ: bytes of the first, and what the second has there.
-fn differences(before: &str, after: &str) -> Vec<(Range<usize>, String)> {
-    let (old, new): (Vec<&str>, Vec<&str>) =
-        (before.split_inclusive('\n').collect(), after.split_inclusive('\n').collect());
-    if old.len().max(new.len()) > MOST_LINES {
-        return if before == after { vec![] } else { vec![(0..before.len(), after.to_string())] };
-    }
-    let starts: Vec<usize> = std::iter::once(0)
-        .chain(old.iter().scan(0, |at, line| {
-            *at += line.len();
-            Some(*at)
-        }))
-        .collect();
-    let diff = similar::capture_diff_slices(similar::Algorithm::Myers, &old, &new);
-    let changed = diff.into_iter().filter(|change| change.tag() != similar::DiffTag::Equal);
-    changed
-        .map(|change| {
-            let (from, to) = (change.old_range(), change.new_range());
-            (starts[from.start]..starts[from.end], new[to].concat())
-        })
-        .collect()
 }

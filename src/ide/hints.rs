@@ -1,40 +1,51 @@
 //! What a text does not say and is known all the same.
 
 use super::walk::Piece;
-use super::{Analysis, Hint, hover, say};
-use crate::check::{Meaning, Type};
+use super::{Analysis, Hint, Stop, hover, optics, say};
+use crate::check::Type;
 use crate::math::atan2;
 use crate::scene::{Camera, Projection};
 use crate::schema::{camera, lens};
 use crate::span::Span;
-use crate::syntax::ast::{Construct, Expr, ExprKind, StatementKind};
+use crate::syntax::ast::{Expr, ExprKind, StatementKind};
 use crate::units;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Width of the film that f-numbers are said for where no sensor is given: that of the default of `sensor`.
 const FULL_FRAME: f64 = 0.036;
 
-/// The hints of a part of the text, in its order.
-pub(super) fn hints(analysis: &Analysis, range: Range<usize>) -> Vec<Hint> {
+/// The hints of a part of the text, in its order; only some once `stop` says so.
+pub(super) fn hints(analysis: &Analysis, range: Range<usize>, stop: Stop) -> Vec<Hint> {
     let mut found = vec![];
-    analysis.walk(analysis.main, range.clone(), &mut |piece| match piece {
+    analysis.walk_until(analysis.main, range.clone(), stop, &mut |piece| match piece {
         Piece::Field(field) => found.extend(value(analysis, &field.value)),
         Piece::Statement(statement) => {
             if let StatementKind::Definition { value: written, .. } = &statement.kind {
                 found.extend(value(analysis, written));
             }
         }
-        Piece::Construct(construct) => {
-            let cameras = analysis.study.cameras.iter();
-            if let Some((seen, _)) = cameras.into_iter().find(|(_, place)| *place == construct.span) {
-                found.extend(camera_hints(analysis, construct, seen));
-            }
-        }
         _ => {}
     });
+    found.extend(of_cameras(analysis, stop));
     found.retain(|hint| range.start <= hint.at && hint.at <= range.end);
     found.sort_by_key(|hint| hint.at);
     found
+}
+
+/// What follows from the fields of cameras and lenses. Of what several cameras are made of only that is said which holds
+/// for all of them.
+fn of_cameras(analysis: &Analysis, stop: Stop) -> Vec<Hint> {
+    let mut found: BTreeMap<usize, Option<Hint>> = BTreeMap::new();
+    let here = analysis.study.views.iter().filter(|(_, place)| place.source == analysis.main);
+    let beside = if here.clone().count() == 1 { optics::beside(analysis) } else { None };
+    for (seen, place) in here.take_while(|_| !stop()) {
+        for hint in camera_hints(analysis, optics::places(analysis, *place, beside), seen) {
+            let known = found.entry(hint.at).or_insert_with(|| Some(hint.clone()));
+            known.take_if(|known| *known != hint);
+        }
+    }
+    found.into_values().flatten().collect()
 }
 
 /// What a computed expression comes to.
@@ -48,26 +59,16 @@ fn value(analysis: &Analysis, written: &Expr) -> Option<Hint> {
     Some(Hint { at: written.span.range().end, text: format!(" = {value}"), about })
 }
 
-/// What follows from the fields of the camera and its lens.
-fn camera_hints(analysis: &Analysis, construct: &Construct, seen: &Camera) -> Vec<Hint> {
+/// What follows from the fields of one camera and its lens.
+fn camera_hints(analysis: &Analysis, places: optics::Places, seen: &Camera) -> Vec<Hint> {
     if seen.projection == Projection::Orthographic {
         return vec![];
     }
     let fov = 2.0 * atan2(seen.half_extent.x, 1.0);
-    let mut places = vec![];
-    let body = construct.body.span.range();
-    analysis.walk(analysis.main, body.clone(), &mut |piece| {
-        let Piece::Field(field) = piece else { return };
-        if let Some(Meaning::Field(kind, index)) = analysis.meaning(field.name.span) {
-            places.push((kind, index, field.value.span));
-        }
-    });
-    places.retain(|(_, _, span)| body.start <= span.range().start && span.range().end <= body.end);
-    let place = |kind, index| -> Option<Span> {
-        places.iter().find(|place| (place.0, place.1) == (kind, index)).map(|place| place.2)
-    };
+    let place = |kind, index| places.get(&(kind, index)).copied();
     let mut found = vec![];
     let mut hint = |at: Option<Span>, text: String, about: &str| {
+        let at = at.filter(|at| at.source == analysis.main);
         found.extend(at.map(|at| Hint { at: at.range().end, text, about: about.into() }));
     };
     let of_lens = |index| place(lens::KIND, index);

@@ -114,7 +114,7 @@ fn of_statement(analysis: &Analysis, statement: &Statement, ty: &Type) -> Hover 
     let doc = statement.doc.as_ref().map(|doc| doc.to_string()).unwrap_or_default();
     let (shown, colour) = match place {
         Some((name, value)) => (
-            seen(analysis, name, value).map(|seen| say::value(seen, Some(ty))),
+            seen(analysis, name, value).and_then(|seen| say::value(seen, Some(ty))),
             colour(analysis, value).or(colour(analysis, name)),
         ),
         None => (None, None),
@@ -154,7 +154,7 @@ fn seen(analysis: &Analysis, name: Span, value: Span) -> Option<&Seen> {
 /// What an expression came to, as the language writes it.
 pub(super) fn value(analysis: &Analysis, place: Span) -> Option<String> {
     let seen = analysis.study.values.get(&place)?;
-    Some(say::value(seen, analysis.study.notes.type_of(place)))
+    say::value(seen, analysis.study.notes.type_of(place))
 }
 
 /// The colour that an expression is.
@@ -228,7 +228,8 @@ pub(super) fn kind_doc(kind: KindId) -> String {
     let common = match kind.get().category {
         Category::Shape | Category::Group => {
             let names: Vec<String> = PLACED.iter().map(|field| format!("`{}`", field.name)).collect();
-            format!("\n- and {}", names.join(", "))
+            let and = if fields.is_empty() { "- " } else { "\n- and " };
+            format!("{and}{}", names.join(", "))
         }
         _ => String::new(),
     };

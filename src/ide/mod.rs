@@ -8,6 +8,7 @@
 //!
 //! No text, offset or range makes a question panic: what lies outside a text is moved to its end.
 
+mod alone;
 mod answers;
 mod colours;
 mod complete;
@@ -17,10 +18,12 @@ mod fixes;
 mod folds;
 mod hints;
 mod hover;
+mod layout;
 mod lenses;
 mod lex;
 mod links;
 mod named;
+mod optics;
 mod rename;
 mod say;
 mod selection;
@@ -31,21 +34,22 @@ mod typing;
 mod walk;
 
 pub use answers::*;
-pub use colours::present;
 pub use complete::complete;
+pub use layout::differences;
 pub use rename::{references, rename};
-pub use say::{default, range};
+pub use say::{default, hex, range};
 pub use signature::signatures;
 pub use symbols::outline;
 
 use crate::check::Notes;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, any_errors};
 use crate::eval::Values;
 use crate::files::FilePath;
 use crate::import::ImportedFile;
 use crate::scene::Camera;
 use crate::source::{Source, Sources};
 use crate::span::{SourceId, Span};
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 /// Asked between steps whether the answer is still wanted: `true` ends the work.
@@ -74,8 +78,10 @@ pub struct Study {
     pub notes: Notes,
     /// What expressions come to.
     pub values: Values,
-    /// The cameras that somebody wrote, and where their blocks stand.
-    pub cameras: Vec<(Camera, Span)>,
+    /// What is seen through the cameras that somebody wrote, and where their blocks stand.
+    pub views: Vec<(Camera, Span)>,
+    /// The names of those that have one, in the order written.
+    pub cameras: Vec<String>,
 }
 
 impl Analysis {
@@ -120,6 +126,17 @@ impl Analysis {
         rename::renamable(self, at)
     }
 
+    /// The names of the cameras that pictures can be taken with. None where there are errors, which may have hidden some.
+    pub fn cameras(&self) -> Option<&[String]> {
+        (!any_errors(&self.diagnostics)).then_some(&*self.study.cameras)
+    }
+
+    /// Which of the diagnostics are said of the text as a scene of its own, and do not hold where another one imports it: that
+    /// nothing stands in it, and that nothing uses what it declares.
+    pub fn alone(&self) -> BTreeSet<usize> {
+        alone::alone(self)
+    }
+
     /// What the text declares, as a tree.
     pub fn symbols(&self) -> Vec<Symbol> {
         symbols::symbols(self)
@@ -135,24 +152,32 @@ impl Analysis {
         selection::selection(self, at)
     }
 
-    /// What the words of a part of the text are, in order. None overlaps another, or goes over a line end.
-    pub fn tokens(&self, range: Range<usize>) -> Vec<Token> {
-        tokens::tokens(self, range)
+    /// What the words of a part of the text are, in order. None overlaps another, or goes over a line end. Once `stop` says so,
+    /// the rest is left out.
+    pub fn tokens(&self, range: Range<usize>, stop: Stop) -> Vec<Token> {
+        tokens::tokens(self, range, stop)
     }
 
-    /// The colours that are written in the text. [`present`] says how another is written in place of one.
-    pub fn colours(&self) -> Vec<Colour> {
-        colours::colours(self)
+    /// The colours that are written in the text; only some once `stop` says so.
+    pub fn colours(&self, stop: Stop) -> Vec<Colour> {
+        colours::colours(self, stop)
+    }
+
+    /// The ways to write a colour in place of the one in a part of the text, each to replace all of it: in its own form
+    /// first. Red, green and blue are display-referred, from 0 to 1.
+    pub fn present(&self, range: Range<usize>, value: [f64; 3]) -> Vec<String> {
+        colours::present(self, range, value)
     }
 
     /// What a part of the text does not say and is known all the same: what expressions come to, what follows from a lens.
-    pub fn hints(&self, range: Range<usize>) -> Vec<Hint> {
-        hints::hints(self, range)
+    /// Only some of it once `stop` says so.
+    pub fn hints(&self, range: Range<usize>, stop: Stop) -> Vec<Hint> {
+        hints::hints(self, range, stop)
     }
 
     /// The edits that lay out a part of the text as the formatter does; none where it has an error.
     pub fn format(&self, range: Range<usize>) -> Vec<Edit> {
-        folds::format(self, range)
+        layout::format(self, range)
     }
 
     /// The files that the text names, each as a path.

@@ -1,7 +1,7 @@
 //! What the names of a text mean, wherever they stand.
 
 use super::Analysis;
-use super::walk::rows_in;
+use super::walk::{entries_in, rows_in};
 use crate::check::Meaning;
 use crate::span::{SourceId, Span};
 use crate::syntax::ast::Entry;
@@ -29,8 +29,7 @@ impl Analysis {
     pub(super) fn uses(&self, source: SourceId, range: Range<usize>) -> Vec<(Span, Meaning)> {
         let mut found = self.noted(source, &range).to_vec();
         let Some(file) = self.study.files.iter().find(|file| file.source == source) else { return found };
-        let entries = &file.tree.body.entries;
-        for entry in entries {
+        for entry in entries_in(&file.tree.body, &range) {
             let Entry::Rows(rows) = entry else { continue };
             for row in rows_in(rows, &range) {
                 let shape = rows.shapes()[rows.shape(row)].statement().span;

@@ -1,12 +1,11 @@
 //! Who uses a name, and giving it another.
 
-use super::lex::{Lexeme, lex};
 use super::{Analysis, Edit, Location};
 use crate::check::{Function, Home, Meaning, Type};
 use crate::diagnostic::Severity;
 use crate::schema::{self, FieldType, KINDS, PLACED};
 use crate::span::Span;
-use crate::syntax::RESERVED;
+use crate::syntax::{self, RESERVED};
 use crate::{color, units};
 use smol_str::SmolStr;
 use std::collections::BTreeSet;
@@ -80,11 +79,7 @@ pub fn rename(all: &[&Analysis], of: &Analysis, at: usize, name: &str) -> Result
 
 /// Whether this may be a name at all.
 fn allowed(name: &str) -> Result<(), String> {
-    let mut pieces = lex(name, 0);
-    let whole = pieces.next() == Some((Lexeme::Word, 0..name.len()));
-    let letters = name.starts_with(|c: char| c.is_alphabetic() || c == '_')
-        && name.chars().all(|c| c.is_alphanumeric() || c == '_');
-    if !whole || !letters {
+    if !syntax::is_word(name) {
         return Err(format!("`{name}` is no name: letters, digits and `_`, and no digit first"));
     }
     let what = if RESERVED.contains(&name) {
@@ -159,7 +154,12 @@ fn free(analysis: &Analysis, place: Span, uses: &[Location], name: &str) -> Resu
         }
     }
     // Where it is used, another thing of this name may be seen: it stands in a scope of that place.
-    for location in uses {
+    let others: Vec<(Span, Span)> = (scopes.iter())
+        .flat_map(|scope| scope.names.iter().map(move |(known, span, _)| (scope.span, known, *span)))
+        .filter(|(_, known, span)| *known == name && *span != place)
+        .map(|(scope, _, span)| (scope, span))
+        .collect();
+    for location in uses.iter().filter(|_| !others.is_empty()) {
         let Some((id, _)) = analysis.source_at(&location.path) else { continue };
         let used = Span::new(id, location.range.start, location.range.end);
         let is_path = analysis.sources.get(id).text[..location.range.start].trim_end().ends_with('.');
@@ -167,10 +167,7 @@ fn free(analysis: &Analysis, place: Span, uses: &[Location], name: &str) -> Resu
         if is_path || is_field {
             continue;
         }
-        let seen = scopes.iter().filter(|scope| scope.span.contains(used));
-        let other =
-            seen.flat_map(|scope| &scope.names).find(|(known, span, _)| known == name && *span != place);
-        if let Some((_, span, _)) = other {
+        if let Some((_, span)) = others.iter().find(|(scope, _)| scope.contains(used)) {
             return Err(format!("`{name}` is declared at {}, line {}", file(*span), line(*span)));
         }
     }

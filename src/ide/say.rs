@@ -76,13 +76,13 @@ pub(super) fn ty(ty: &Type) -> String {
     }
 }
 
-/// A value as the language writes it, in a unit that suits its size.
-pub(super) fn value(seen: &Seen, ty: Option<&Type>) -> String {
+/// A value as the language writes it, in a unit that suits its size; none of what it has no writing for.
+pub(super) fn value(seen: &Seen, ty: Option<&Type>) -> Option<String> {
     let dim = match ty {
         Some(Type::Scalar(element) | Type::Tuple(_, element)) => element.dim(),
         _ => units::NONE,
     };
-    match seen {
+    Some(match seen {
         Seen::Number(x) => quantity(*x, dim),
         Seen::Tuple(v) => {
             let (unit, factor) = unit(v.abs().max_element(), dim);
@@ -94,10 +94,12 @@ pub(super) fn value(seen: &Seen, ty: Option<&Type>) -> String {
         }
         Seen::Bool(value) => value.to_string(),
         Seen::Text(text) => format!("{text:?}"),
+        // What is brighter than white, or no mixture of the three, is shown as near as can be, but not written.
+        Seen::Color(color) if (color.min_element() < 0.0) || (color.max_element() > 1.0) => return None,
         Seen::Color(color) => hex(displayed(*color)),
         Seen::List(1) => "1 item".into(),
         Seen::List(count) => format!("{count} items"),
-    }
+    })
 }
 
 /// A quantity in base units, in a unit that suits its size.
@@ -135,15 +137,16 @@ pub(super) fn number(x: f64) -> String {
     }
 }
 
-/// A linear colour as it is displayed: each channel from 0 to 1.
+/// A linear colour as it is displayed: each channel from 0 to 1. What is brighter than white keeps its hue.
 pub(super) fn displayed(color: Rgb) -> [f64; 3] {
+    let color = color / color.max_element().max(1.0);
     let shown = |x: f64| if x.is_finite() { encode_srgb(x.clamp(0.0, 1.0)) } else { 0.0 };
     let DVec3 { x, y, z } = color;
     [shown(x), shown(y), shown(z)]
 }
 
-/// A displayed colour with `#`.
-pub(super) fn hex(color: [f64; 3]) -> String {
+/// A colour with `#`; display-referred, red, green and blue from 0 to 1.
+pub fn hex(color: [f64; 3]) -> String {
     let [r, g, b] = color.map(|x| (x.clamp(0.0, 1.0) * 255.0).round() as u8);
     format!("#{r:02x}{g:02x}{b:02x}")
 }
@@ -160,6 +163,17 @@ mod tests {
         assert_eq!(quantity(0.0, units::LENGTH), "0m");
         assert_eq!(quantity(1.0 / 3.0, units::NONE), "0.333333");
         let point = Type::Tuple(3, Element::Quantity(units::LENGTH));
-        assert_eq!(value(&Seen::Tuple(DVec3::new(0.0, 0.03, -0.02)), Some(&point)), "(0, 30, -20)mm");
+        let written = value(&Seen::Tuple(DVec3::new(0.0, 0.03, -0.02)), Some(&point));
+        assert_eq!(written.as_deref(), Some("(0, 30, -20)mm"));
+    }
+
+    #[test]
+    fn what_is_brighter_than_white_keeps_its_hue_and_is_not_written() {
+        let color = |r, g, b| DVec3::new(r, g, b);
+        assert_eq!(hex(displayed(color(2.0, 1.0, 0.0))), hex(displayed(color(1.0, 0.5, 0.0))));
+        assert_eq!(value(&Seen::Color(color(2.0, 1.0, 0.0)), None), None);
+        assert_eq!(value(&Seen::Color(color(1.0, -0.1, 0.0)), None), None);
+        assert_eq!(value(&Seen::Color(color(1.0, 0.0, 0.0)), None).as_deref(), Some("#ff0000"));
+        assert_eq!(hex([-1.0, 2.0, f64::NAN]), "#00ff00");
     }
 }

@@ -2,7 +2,7 @@
 
 use super::lex::{Lexeme, lex, split};
 use super::walk::Piece;
-use super::{Analysis, Token, TokenKind};
+use super::{Analysis, Stop, Token, TokenKind};
 use crate::check::{Making, Meaning, Type};
 use crate::schema::Category;
 use crate::span::Span;
@@ -11,14 +11,14 @@ use crate::syntax::ast::{StatementKind, TypeName};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-/// What the words of a part of the text are.
-pub(super) fn tokens(analysis: &Analysis, range: Range<usize>) -> Vec<Token> {
+/// What the words of a part of the text are; only some once `stop` says so.
+pub(super) fn tokens(analysis: &Analysis, range: Range<usize>, stop: Stop) -> Vec<Token> {
     let text = &analysis.source().text;
     let range = range.start.min(text.len())..range.end.min(text.len());
-    let words = Words::of(analysis, range.clone());
+    let words = Words::of(analysis, range.clone(), stop);
     let mut found = vec![];
     for (lexeme, place) in lex(text, 0) {
-        if place.start > range.end {
+        if place.start > range.end || stop() {
             break;
         }
         if place.end >= range.start && lexeme != Lexeme::Line {
@@ -37,12 +37,12 @@ struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
-    fn of(analysis: &'a Analysis, range: Range<usize>) -> Words<'a> {
+    fn of(analysis: &'a Analysis, range: Range<usize>, stop: Stop) -> Words<'a> {
         let uses = analysis.uses(analysis.main, range.clone()).into_iter();
         let here = |(span, _): &&(Span, Type)| span.source == analysis.main && !span.range().is_empty();
         let declared = analysis.study.notes.declared.iter().filter(here);
         let mut types = BTreeSet::new();
-        analysis.walk(analysis.main, range, &mut |piece| {
+        analysis.walk_until(analysis.main, range, stop, &mut |piece| {
             if let Piece::Type(ty) = piece {
                 let mut ty = ty;
                 while let TypeName::List(inner, _) = ty {

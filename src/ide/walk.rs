@@ -1,6 +1,6 @@
 //! Goes through the trees of a text in its order.
 
-use super::Analysis;
+use super::{Analysis, Stop};
 use crate::span::{SourceId, Span};
 use crate::syntax::Rows;
 use crate::syntax::ast::{
@@ -35,9 +35,20 @@ pub(super) enum Declared<'t> {
 impl Analysis {
     /// Goes through those pieces of a text that touch a range.
     pub(super) fn walk(&self, source: SourceId, range: Range<usize>, visit: &mut dyn FnMut(Piece)) {
+        self.walk_until(source, range, &|| false, visit);
+    }
+
+    /// The same, which ends early once `stop` says so.
+    pub(super) fn walk_until(
+        &self,
+        source: SourceId,
+        range: Range<usize>,
+        stop: Stop,
+        visit: &mut dyn FnMut(Piece),
+    ) {
         let Some(file) = self.study.files.iter().find(|file| file.source == source) else { return };
         let text = &self.sources.get(source).text;
-        Walk { text, range, visit }.body(&file.tree.body);
+        Walk { text, range, stop, visit }.body(&file.tree.body);
     }
 
     /// What the name at a place is declared by; none where none is declared there.
@@ -100,9 +111,23 @@ pub(super) fn rows_in(rows: &Rows, range: &Range<usize>) -> Range<usize> {
     first..behind(first, &|place| place.start <= range.end)
 }
 
+/// The entries of a body that touch a range: they are in the order of the text, and none overlaps another.
+pub(super) fn entries_in<'b>(body: &'b Body, range: &Range<usize>) -> &'b [Entry] {
+    let place = |entry: &Entry| match entry {
+        Entry::Field(field) => field.name.span.to(field.value.span).range(),
+        Entry::Statement(statement) => whole(statement).range(),
+        Entry::Rows(rows) => rows.span().range(),
+        Entry::Broken(broken) => broken.span.range(),
+    };
+    let first = body.entries.partition_point(|entry| place(entry).end < range.start);
+    let rest = &body.entries[first..];
+    &rest[..rest.partition_point(|entry| place(entry).start <= range.end)]
+}
+
 struct Walk<'w> {
     text: &'w str,
     range: Range<usize>,
+    stop: Stop<'w>,
     visit: &'w mut dyn FnMut(Piece),
 }
 
@@ -117,25 +142,28 @@ impl Walk<'_> {
             return;
         }
         (self.visit)(Piece::Body(body));
-        for entry in &body.entries {
+        for entry in entries_in(body, &self.range) {
             match entry {
-                Entry::Field(field) if self.touches(field.name.span.to(field.value.span)) => {
+                Entry::Field(field) => {
                     (self.visit)(Piece::Field(field));
                     self.expr(&field.value);
                 }
                 Entry::Statement(statement) => self.statement(statement),
                 Entry::Rows(rows) => {
                     for row in rows_in(rows, &self.range) {
+                        if (self.stop)() {
+                            return;
+                        }
                         self.statement(&rows.statement(row, self.text));
                     }
                 }
-                Entry::Field(_) | Entry::Broken(_) => {}
+                Entry::Broken(_) => {}
             }
         }
     }
 
     fn statement(&mut self, statement: &Statement) {
-        if !self.touches(whole(statement)) {
+        if (self.stop)() || !self.touches(whole(statement)) {
             return;
         }
         (self.visit)(Piece::Statement(statement));

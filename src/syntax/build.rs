@@ -481,7 +481,7 @@ impl<'t> Builder<'t> {
         let name = self.name(&inner.next().expect("a definition has a name"));
         let sign = inner.next().expect("a definition has `=` or `:`");
         let (value, depth) = self.expression(inner);
-        if matches!(sign.as_str(), ":" | ":=") {
+        if matches!(sign.as_str(), ":" | ":=" | "==") {
             let place = self.span(&sign);
             let edit = self.at(name.span.range().end - self.base, sign.as_span().end());
             self.report(errors::colon_in_definition(keyword.as_str(), &name.text, place, edit));

@@ -388,6 +388,7 @@ pub(super) fn stray_closer(span: Span, closer: char) -> Diagnostic {
     Diagnostic::new(Code::E0001, format!("`{closer}` closes nothing"), span)
         .at("nothing of its kind is open here")
         .help("delete it, or open the bracket it should close")
+        .offer("delete it", vec![(span, String::new())])
 }
 
 // --- E0003: `=` or `;` ------------------------------------------------------------------------------------

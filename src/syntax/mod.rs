@@ -31,6 +31,8 @@ pub use rows::{Rows, Shape};
 
 use crate::diagnostic::Diagnostic;
 use crate::span::{SourceId, Span};
+use build::{Grammar, Rule};
+use pest::Parser;
 use rayon::prelude::*;
 
 /// The words of the language, which cannot be names.
@@ -38,6 +40,11 @@ pub const RESERVED: &[&str] = &[
     "let", "material", "and", "or", "not", "true", "false", "param", "part", "import", "as", "for", "in",
     "if", "then", "else", "fn", "to", "assert",
 ];
+
+/// Whether a text is one word, as names are and the words of the language.
+pub fn is_word(text: &str) -> bool {
+    Grammar::parse(Rule::word, text).is_ok_and(|found| found.as_str() == text)
+}
 
 /// The words that name types, as far as the form of a statement depends on them: `param int count` is the wrong way
 /// round. What they mean is not known here.

@@ -192,10 +192,12 @@ fn part<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> De
             (empty(span.after()), 0)
         }
     };
-    for Parameter { name, ty } in taken.into_iter().flatten() {
+    let params = taken.into_iter().flatten().map(|Parameter { name, ty }| {
         let (span, default) = (name.span, invalid(name.span));
-        body.entries.push(builder.plain(StatementKind::Param { name, ty, default, range: None }, span));
-    }
+        builder.plain(StatementKind::Param { name, ty, default, range: None }, span)
+    });
+    // They stand before the body.
+    body.entries.splice(0..0, params);
     (StatementKind::Part { name, body }, depth)
 }
 

@@ -3,8 +3,11 @@
 use super::{analysed, root};
 use crate::fuzz::texts;
 use proptest::prelude::*;
+use rt_lang::diagnostic::Severity;
 use rt_lang::eval::Limits;
-use rt_lang::ide::{self, Symbol};
+use rt_lang::files::FilePath;
+use rt_lang::ide::{self, CompletionKind, Symbol};
+use rt_lang::source::Source;
 use rt_lang::span::Span;
 
 /// Asks everything there is at a byte.
@@ -15,7 +18,7 @@ fn ask(text: &str, at: usize) {
         |span: Span| assert!(analysis.sources.get(span.source).text.get(span.range()).is_some(), "{text}");
     let all = 0..text.len();
     let (mut last, mut around) = (0, None::<Span>);
-    for token in analysis.tokens(all.clone()) {
+    for token in analysis.tokens(all.clone(), &|| false) {
         sound(token.span);
         assert!(token.span.range().start >= last, "tokens overlap in {text}");
         last = token.span.range().end;
@@ -28,17 +31,22 @@ fn ask(text: &str, at: usize) {
     analysis.folds().iter().for_each(|fold| sound(fold.span));
     analysis.links().iter().for_each(|link| sound(link.span));
     analysis.lenses().iter().for_each(|lens| sound(lens.span));
-    analysis.colours().iter().for_each(|colour| sound(colour.span));
+    analysis.colours(&|| false).iter().for_each(|colour| sound(colour.span));
     analysis.symbols().iter().for_each(|symbol| {
         sound(symbol.span);
         assert!(symbol.span.contains(symbol.select), "{text}");
     });
     assert_eq!(places(&ide::outline(analysis.source())), places(&analysis.symbols()), "{text}");
-    assert!(analysis.hints(all.clone()).iter().all(|hint| text.is_char_boundary(hint.at)), "{text}");
+    assert!(
+        analysis.hints(all.clone(), &|| false).iter().all(|hint| text.is_char_boundary(hint.at)),
+        "{text}"
+    );
     for fix in analysis.fixes(all.clone()) {
         assert!(fix.edits.iter().all(|edit| text.get(edit.at.range.clone()).is_some()), "{text}");
     }
     analysis.format(at..at);
+    analysis.present(at..at, [1.0, 0.0, 0.0]);
+    analysis.present(at..text.len().max(at), [f64::NAN, 0.5, 2.0]);
     analysis.hover(at).iter().for_each(|hover| sound(hover.span));
     analysis.definition(at).iter().for_each(|found| sound(found.name));
     ide::references(&[], &analysis, at, true);
@@ -59,6 +67,41 @@ fn places(symbols: &[Symbol]) -> Vec<(&str, Span, Span, bool)> {
         [vec![own], places(&symbol.children)].concat()
     });
     within.collect()
+}
+
+/// What is offered for a kind is a scene as it is, but for what only its writer knows.
+#[test]
+fn kinds_are_offered_with_values_that_fit() {
+    let mut tried = 0;
+    for (before, after) in [("", ""), ("sphere { radius: 1m, material: ", " }"), ("camera { ", " }")] {
+        let source = Source::new("any.rt", format!("{before}{after}")).at(FilePath::root("any.rt"));
+        let offered = ide::complete(&root(), &source, before.len(), &Limits::default(), &|| false);
+        let kinds = offered.iter().filter(|offer| matches!(offer.kind, CompletionKind::Kind));
+        // A hole without a value is for a name or a file.
+        for offer in kinds.filter(|offer| offer.insert.holes.iter().all(|hole| !hole.is_empty())) {
+            // Something to be seen by a camera.
+            let text = format!("{before}{}{after}\nsphere {{ radius: 1m }}\n", offer.insert.text);
+            let analysis = analysed(&root(), "any.rt", &text);
+            let errors: Vec<&str> = (analysis.diagnostics.iter())
+                .filter(|said| said.severity() == Severity::Error)
+                .map(|said| &*said.message)
+                .collect();
+            assert!(errors.is_empty(), "{text}{errors:?}");
+            tried += 1;
+        }
+    }
+    assert!(tried > 15, "{tried}");
+}
+
+/// A value that is made of itself would be a cycle.
+#[test]
+fn a_name_is_not_offered_where_it_is_declared() {
+    for begun in ["let b = 1m\nlet a = ", "let b = 1m\nfor a in ", "let b = 1m\nparam a: length = "] {
+        let source = Source::new("any.rt", begun).at(FilePath::root("any.rt"));
+        let offered = ide::complete(&root(), &source, begun.len(), &Limits::default(), &|| false);
+        let has = |label: &str| offered.iter().any(|offer| offer.label == label);
+        assert!(has("b") && !has("a"), "{begun}");
+    }
 }
 
 /// Every few bytes of the cases, as if they were being typed.

@@ -4,8 +4,10 @@
 //! `$rename:NAME$` asks for the edits of a renaming. A first line `// ask: symbols, tokens` asks of the whole file.
 
 mod any;
+mod large;
 mod rename;
 mod shown;
+mod typed;
 
 use crate::folder::Folder;
 use rt_lang::files::FilePath;

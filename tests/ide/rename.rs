@@ -59,6 +59,43 @@ fn scenes() -> Vec<PathBuf> {
     found
 }
 
+/// What is given the name of something else is refused, or means what it meant.
+#[test]
+fn a_name_that_is_taken_is_refused() {
+    let (mut refused, mut renamed) = (0, 0);
+    for path in scenes() {
+        let folder = Folder::of(&path);
+        let (text, _) = super::marks(&std::fs::read_to_string(&path).unwrap());
+        let name = FilePath::root(path.file_name().unwrap().to_str().unwrap());
+        let source = Source::new("main.rt", text.as_str()).at(name.clone());
+        let before = meaning(&folder, &name, &text);
+        if before.0.is_none() {
+            continue;
+        }
+        let analysis = analyse(&folder, source.clone(), &Options::default(), &|| false).unwrap();
+        let all = analysis.tokens(0..text.len(), &|| false);
+        let declared: Vec<_> = all.iter().filter(|token| token.declaration).collect();
+        let named = |index: usize| &text[declared[index % declared.len()].span.range()];
+        for (index, token) in declared.iter().enumerate() {
+            let at = token.span.range().start;
+            for other in
+                [named(index + 1), named(index + 7)].into_iter().filter(|other| *other != named(index))
+            {
+                match ide::rename(&[], &analysis, at, other) {
+                    Err(_) => refused += 1,
+                    Ok(edits) => {
+                        let edited = Edited { folder: &folder, texts: apply(&folder, &source, &edits) };
+                        let after = meaning(&edited, &name, &edited.texts[&name]);
+                        assert_eq!(after, before, "{}: {edits:?}", path.display());
+                        renamed += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(refused > 100 && renamed > 5, "{refused} were refused, {renamed} made");
+}
+
 #[test]
 fn a_renamed_scene_is_the_same() {
     let mut renamed = 0;
@@ -74,7 +111,7 @@ fn a_renamed_scene_is_the_same() {
         }
         let analysis = analyse(&folder, source.clone(), &Options::default(), &|| false).unwrap();
         let mut seen = BTreeSet::new();
-        for token in analysis.tokens(0..text.len()) {
+        for token in analysis.tokens(0..text.len(), &|| false) {
             let at = token.span.range().start;
             let Some(Ok(_)) = analysis.renamable(at) else { continue };
             let edits = ide::rename(&[], &analysis, at, "another_name").unwrap();

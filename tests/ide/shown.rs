@@ -13,7 +13,7 @@ pub fn whole(analysis: &Analysis, question: &str) -> String {
         "symbols" => analysis.symbols().iter().map(|symbol| symbols(symbol, 0)).collect(),
         "outline" => ide::outline(analysis.source()).iter().map(|symbol| symbols(symbol, 0)).collect(),
         "tokens" => analysis
-            .tokens(all)
+            .tokens(all, &|| false)
             .iter()
             .map(|token| {
                 let declares = if token.declaration { ", declared" } else { "" };
@@ -26,18 +26,18 @@ pub fn whole(analysis: &Analysis, question: &str) -> String {
             .map(|fold| format!("{} {:?}", place(&analysis.sources, fold.span), fold.kind))
             .collect(),
         "colours" => analysis
-            .colours()
+            .colours(&|| false)
             .iter()
             .map(|colour| {
                 let written = text(analysis, colour.span);
-                let ways = ide::present(&written, colour.value);
+                let ways = analysis.present(colour.span.range(), colour.value);
                 format!("{written} is {:.3?}: {}", colour.value, ways.join(" or "))
             })
             .collect(),
         "hints" => {
             // As the text would look with them.
             let mut shown = analysis.source().text.clone();
-            for hint in analysis.hints(all).iter().rev() {
+            for hint in analysis.hints(all, &|| false).iter().rev() {
                 shown.insert_str(hint.at, &format!("‹{}›", hint.text));
             }
             vec![shown]

@@ -14,10 +14,30 @@ if exists('*RtIndent')
   finish
 endif
 
-" A line without its texts and comments.
+" A line without its texts and comments, also of one that goes on below.
 function! s:Bare(number) abort
   let line = substitute(getline(a:number), '"\%(\\.\|[^"\\]\)*"', '""', 'g')
-  return substitute(line, '//.*\|/\*.\{-}\*/', '', 'g')
+  return substitute(line, '//.*\|/\*.\{-}\%(\*/\|$\)', '', 'g')
+endfunction
+
+" Whether what stands at a column is in a text or behind `//`.
+function! s:Hidden(number, column) abort
+  let before = strpart(getline(a:number), 0, a:column - 1)
+  return substitute(before, '"\%(\\.\|[^"\\]\)*"', '', 'g') =~# '"\|//'
+endfunction
+
+" The line on which the comment begins that a line begins inside of; 0 where it does not. Comments are seldom longer than
+" is looked for.
+function! s:Comment(number) abort
+  call cursor(a:number, 1)
+  while 1
+    let [line, column] = searchpos('/\*\|\*/', 'bW', max([1, a:number - 100]))
+    if line == 0 || getline(line)[column - 1] ==# '*'
+      return 0
+    elseif !s:Hidden(line, column)
+      return line
+    endif
+  endwhile
 endfunction
 
 " Whether a line leaves a bracket open.
@@ -35,7 +55,15 @@ function! s:GoesOn(line) abort
 endfunction
 
 function! RtIndent(number) abort
+  " What a comment holds is laid out by who wrote it.
+  if s:Comment(a:number) > 0
+    return -1
+  endif
   let before = prevnonblank(a:number - 1)
+  let begun = getline(before) =~# '\*/' ? s:Comment(before) : 0
+  if begun > 0
+    let before = begun
+  endif
   if before == 0
     return 0
   endif

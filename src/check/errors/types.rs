@@ -143,20 +143,37 @@ fn unit_code(wanted: Dim, found: Element) -> Code {
     }
 }
 
-/// Help for a bare number where a quantity is wanted; a literal can be mended blindly only by its author, who
-/// alone knows the unit, so no edit is offered.
+/// Help for a bare number where a quantity is wanted. The unit is known to its author alone, so each that fits is offered.
 fn with_unit(diagnostic: Diagnostic, text: &str, unit: Option<String>) -> Diagnostic {
     let Some(unit) = unit else { return diagnostic };
     if text.ends_with('%') {
         return diagnostic.help(format!("a ratio has no unit: write `50% * 1{unit}`, or how much it is"));
     }
-    let text = if text.is_empty() || text.len() > 40 || text.contains(['\n', '<']) { "(…)" } else { text };
-    let shown = if is_bare(text) { text.to_string() } else { format!("({text})") };
+    let short = if text.is_empty() || text.len() > 40 || text.contains(['\n', '<']) { "(…)" } else { text };
+    let shown = if is_bare(short) { short.to_string() } else { format!("({short})") };
     let help = match unit.as_str() {
         "m" => format!("write `{shown}m`, `{shown}cm` or `{shown}mm`"),
         unit => format!("write `{shown}{unit}`"),
     };
-    diagnostic.help(help)
+    let place = [(diagnostic.primary.span, text)];
+    offer_units(diagnostic.help(help), &unit, &place, |unit| format!("write `{shown}{unit}`"))
+}
+
+/// Offers to put a unit behind each of some values, which have none.
+fn offer_units(
+    diagnostic: Diagnostic,
+    unit: &str,
+    places: &[(Span, &str)],
+    title: impl Fn(&str) -> String,
+) -> Diagnostic {
+    let units = if unit == "m" { &["m", "cm", "mm"][..] } else { &[unit] };
+    units.iter().fold(diagnostic, |diagnostic, unit| {
+        let edits = places.iter().flat_map(|(span, text)| match is_bare(text) {
+            true => vec![(span.after(), unit.to_string())],
+            false => vec![(span.before(), "(".into()), (span.after(), format!("){unit}"))],
+        });
+        diagnostic.offer(title(unit), edits.collect())
+    })
 }
 
 fn sample(ty: FieldType, unit: &str) -> String {
@@ -388,6 +405,9 @@ pub(in crate::check) fn arguments(
                 false => format!("`({text}){unit}`"),
             };
             let short = places.iter().all(|(_, text)| text.len() <= 20 && !text.contains('\n'));
+            let diagnostic = Diagnostic { offers: vec![], ..diagnostic };
+            let title = |unit: &str| format!("write each in `{unit}`");
+            let diagnostic = offer_units(diagnostic, &unit, places, title);
             match short {
                 true => diagnostic.help(format!(
                     "each has its unit: {}",
@@ -400,9 +420,19 @@ pub(in crate::check) fn arguments(
     }
 }
 
-/// Whether a text is a number or a triple, which a unit can touch.
+/// Whether a text is a number or stands in parentheses, which a unit can touch.
 fn is_bare(text: &str) -> bool {
-    text.starts_with('(') || text.bytes().all(|b| b.is_ascii_digit() || b == b'.')
+    let mut depth = 0usize;
+    let closes = text.bytes().position(|byte| {
+        depth = match byte {
+            b'(' => depth + 1,
+            b')' => depth.saturating_sub(1),
+            _ => depth,
+        };
+        depth == 0
+    });
+    let is_number = !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit() || b == b'.');
+    is_number || text.starts_with('(') && closes == Some(text.len() - 1)
 }
 
 pub(in crate::check) fn triple_wanted(

@@ -91,6 +91,8 @@ struct Papers {
     /// Of an answer that is under way.
     answering: Option<Arc<Control>>,
     questions: VecDeque<Question>,
+    /// Whether nothing is left here any more, and nothing wanted of what is under way.
+    closed: bool,
 }
 
 impl Desk {
@@ -104,26 +106,37 @@ impl Desk {
                 papers.names.push(name);
             }
         }
-        let tracing = papers.control.iter().map(|(control, _)| control);
-        tracing.chain(&papers.answering).for_each(|control| control.cancel());
+        papers.cancel();
         self.news.notify_all();
     }
 
-    /// Takes the next job as soon as there is one, with what is different from the one that was taken before.
-    pub fn take(&self) -> (Arc<Job>, Vec<String>) {
+    /// Ends the work: what is under way is to stop, and no more comes. To those who work it is as if a new job waited.
+    pub fn close(&self) {
         let mut papers = self.lock();
-        loop {
+        papers.closed = true;
+        // Whoever waits for an answer gets none.
+        papers.questions.clear();
+        papers.cancel();
+        self.news.notify_all();
+    }
+
+    /// Takes the next job as soon as there is one, with what is different from the one that was taken before; none once the
+    /// work is to end.
+    pub fn take(&self) -> Option<(Arc<Job>, Vec<String>)> {
+        let mut papers = self.lock();
+        while !papers.closed {
             match papers.next.take() {
-                Some(job) => return (job, std::mem::take(&mut papers.names)),
+                Some(job) => return Some((job, std::mem::take(&mut papers.names))),
                 None => papers = self.wait(papers),
             }
         }
+        None
     }
 
     /// A handle for a trace that is about to begin; none where a new job waits.
     pub fn begin(&self, effort: Effort) -> Option<Arc<Control>> {
         let mut papers = self.lock();
-        if papers.next.is_some() {
+        if papers.is_news() {
             return None;
         }
         let control = Arc::new(Control::new());
@@ -135,14 +148,14 @@ impl Desk {
     /// Waits until there is a new job or another wish for what comes first.
     pub fn rest(&self, first: Option<Window>) {
         let mut papers = self.lock();
-        while papers.next.is_none() && papers.first == first {
+        while !papers.is_news() && papers.first == first {
             papers = self.wait(papers);
         }
     }
 
     /// Whether a new job waits.
     pub fn is_news(&self) -> bool {
-        self.lock().next.is_some()
+        self.lock().is_news()
     }
 
     /// What is to be traced first.
@@ -184,7 +197,7 @@ impl Desk {
     pub fn begin_answer(&self) -> Arc<Control> {
         let mut papers = self.lock();
         let control = Arc::new(Control::new());
-        if papers.next.is_some() {
+        if papers.is_news() {
             control.cancel();
         }
         papers.answering = Some(control.clone());
@@ -205,7 +218,7 @@ impl Desk {
     pub fn question(&self) -> Option<Question> {
         let mut papers = self.lock();
         loop {
-            if papers.next.is_some() {
+            if papers.is_news() {
                 return None;
             }
             match papers.questions.pop_front() {
@@ -227,6 +240,17 @@ impl Desk {
 }
 
 impl Papers {
+    /// Whether what is under way is out of date.
+    fn is_news(&self) -> bool {
+        self.closed || self.next.is_some()
+    }
+
+    /// Stops what is under way.
+    fn cancel(&self) {
+        let tracing = self.control.iter().map(|(control, _)| control);
+        tracing.chain(&self.answering).for_each(|control| control.cancel());
+    }
+
     fn hold(&self) {
         if let Some((control, effort)) = &self.control {
             control.pause(self.reading || self.paused && *effort == Effort::Long);

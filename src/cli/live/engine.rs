@@ -90,7 +90,7 @@ impl Engine {
         }
     }
 
-    /// Does what is asked until the process ends.
+    /// Does what is asked until that is to end.
     pub fn run(mut self, requests: &Receiver<Request>) -> Result<Exit, Problem> {
         self.watcher.follow([self.scene.clone()]);
         self.look(true);
@@ -111,6 +111,7 @@ impl Engine {
             let (mut look, mut set) = (false, false);
             for request in waiting {
                 match request {
+                    Request::End => return Ok(Exit::Done),
                     Request::Look => look = true,
                     Request::Set { name, value } => set |= self.set(name, value),
                     other => self.answer(other),
@@ -124,7 +125,7 @@ impl Engine {
 
     fn answer(&mut self, request: Request) {
         match request {
-            Request::Look | Request::Set { .. } => {}
+            Request::End | Request::Look | Request::Set { .. } => {}
             Request::Write { name, reply } => self.write(&name, reply),
             Request::Crop(window) => self.crop(window),
             Request::Pause(paused) => {

@@ -263,6 +263,8 @@ pub enum Request {
     Crop(Option<[u32; 4]>),
     /// Lets paths wait, or go on.
     Pause(bool),
+    /// Ends.
+    End,
     /// Why a pixel looks as it does.
     Why {
         /// Column.
@@ -293,6 +295,8 @@ pub struct Hub {
     known: Mutex<Newest>,
     version: watch::Sender<u64>,
     requests: mpsc::Sender<Request>,
+    /// Whether there is nothing to look at any more.
+    ended: watch::Sender<bool>,
 }
 
 #[derive(Debug, Default)]
@@ -305,7 +309,8 @@ impl Hub {
     /// A place with nothing known yet, and the end at which requests arrive.
     pub fn new() -> (Arc<Hub>, mpsc::Receiver<Request>) {
         let (requests, arriving) = mpsc::channel();
-        let hub = Hub { known: Mutex::default(), version: watch::Sender::new(0), requests };
+        let (version, ended) = (watch::Sender::new(0), watch::Sender::new(false));
+        let hub = Hub { known: Mutex::default(), version, requests, ended };
         (Arc::new(hub), arriving)
     }
 
@@ -327,6 +332,18 @@ impl Hub {
     /// Asks the engine. Nothing comes of it once that has ended.
     pub fn ask(&self, request: Request) {
         let _ = self.requests.send(request);
+    }
+
+    /// Ends: the engine, and the page.
+    pub fn end(&self) {
+        self.ask(Request::End);
+        self.ended.send_replace(true);
+    }
+
+    /// Waits for the end.
+    pub async fn ended(&self) {
+        // It fails only where nobody can end it, and so not while this is here.
+        let _ = self.ended.subscribe().wait_for(|ended| *ended).await;
     }
 
     /// Shows a picture.

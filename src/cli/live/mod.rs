@@ -77,11 +77,19 @@ pub fn run(arguments: &Watch, terminal: Terminal, interrupt: &Interrupt) -> Resu
     Engine::new(arguments, reader, watcher, desk, hub, interrupt.clone(), terminal).run(&requests)
 }
 
-/// A preview that is served until the process ends.
+/// A preview that is served until it is dropped; its threads end soon after.
 pub struct Live {
     /// The address of its page.
     pub url: String,
     hub: Arc<Hub>,
+    desk: Arc<Desk>,
+}
+
+impl Drop for Live {
+    fn drop(&mut self) {
+        self.hub.end();
+        self.desk.close();
+    }
 }
 
 impl Live {
@@ -104,17 +112,18 @@ pub fn preview(
     terminal: Terminal,
     interrupt: &Interrupt,
 ) -> Result<Live, Problem> {
-    let Started { hub, requests, desk } = start(arguments, vec![], terminal, interrupt)?;
     let address = arguments.serve.ok_or_else(|| Problem::new("there is nothing to serve"))?;
-    let url = serve::start(hub.clone(), Wanted { address, editor: Editor::told(tell) })?;
+    let Started { hub, requests, desk } = start(arguments, vec![], terminal, interrupt)?;
+    let mut live = Live { url: String::new(), hub: hub.clone(), desk: desk.clone() };
+    live.url = serve::start(hub.clone(), Wanted { address, editor: Editor::told(tell) })?;
     let watcher = follow_files(arguments, &hub)?;
     let reader =
         Reader::new(&arguments.scene, &arguments.reading, arguments.taking.overrides(), vec![]).by(load);
-    let engine = Engine::new(arguments, reader, watcher, desk, hub.clone(), interrupt.clone(), terminal);
+    let engine = Engine::new(arguments, reader, watcher, desk, hub, interrupt.clone(), terminal);
     let follow = move || engine.run(&requests);
     let started = std::thread::Builder::new().name("follow".into()).spawn(follow);
     started.map_err(|error| Problem::new(format!("cannot start a thread: {error}")))?;
-    Ok(Live { url, hub })
+    Ok(live)
 }
 
 /// What is there before anything is read.

@@ -105,12 +105,11 @@ struct Canvas {
 }
 
 impl Painter {
-    /// Paints for ever.
-    pub fn run(&self) -> ! {
+    /// Paints as long as there may be work.
+    pub fn run(&self) {
         let _bomb = Bomb;
         let mut left = Left::default();
-        loop {
-            let (job, names) = self.desk.take();
+        while let Some((job, names)) = self.desk.take() {
             left = Painting::new(self, &job, &names, left).run();
             left.job = Some(job);
         }

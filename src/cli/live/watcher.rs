@@ -37,7 +37,7 @@ impl Watcher {
         let tell: Tell = std::sync::Arc::new(tell);
         let mut watcher = Watcher { system: None, folders: BTreeMap::new(), tell: tell.clone() };
         match period {
-            Some(period) => poll(period, tell)?,
+            Some(period) => poll(period, &tell)?,
             None => {
                 let told = move |event: notify::Result<notify::Event>| {
                     if event.is_ok_and(|event| is_change(event.kind)) {
@@ -46,7 +46,7 @@ impl Watcher {
                 };
                 match notify::recommended_watcher(told) {
                     Ok(system) => watcher.system = Some(system),
-                    Err(_) => poll(PERIOD, watcher.tell.clone())?,
+                    Err(_) => poll(PERIOD, &watcher.tell)?,
                 }
             }
         }
@@ -84,7 +84,7 @@ impl Watcher {
                 Err(_) => deaf |= folder.is_dir(),
             }
         }
-        if deaf && poll(PERIOD, self.tell.clone()).is_ok() {
+        if deaf && poll(PERIOD, &self.tell).is_ok() {
             // The system watches no more folders than it likes.
             self.system = None;
         } else if fresh {
@@ -131,11 +131,16 @@ fn places(path: &Path, found: &mut BTreeSet<PathBuf>, links: usize) {
     }
 }
 
-fn poll(period: Duration, tell: Tell) -> Result<(), Problem> {
+/// Tells every so often, as long as somebody else may want to tell as well.
+fn poll(period: Duration, tell: &Tell) -> Result<(), Problem> {
+    let tell = std::sync::Arc::downgrade(tell);
     let started = std::thread::Builder::new().name("poll".into()).spawn(move || {
         loop {
             std::thread::sleep(period);
-            tell();
+            match tell.upgrade() {
+                Some(tell) => tell(),
+                None => return,
+            }
         }
     });
     started.map(drop).map_err(|error| Problem::new(format!("cannot start a thread: {error}")))

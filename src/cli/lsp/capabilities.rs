@@ -19,6 +19,20 @@ pub fn initialized(encoding: Encoding) -> lsp::InitializeResult {
     }
 }
 
+/// What the client is asked to watch: scenes, and what they read.
+pub fn watched() -> lsp::RegistrationParams {
+    let pattern = "**/*.{rt,csv,png,jpg,jpeg,webp,hdr,exr,pfm,ply,obj,stl}";
+    let watchers =
+        vec![lsp::FileSystemWatcher { glob_pattern: lsp::GlobPattern::Pattern(pattern.into()), kind: None }];
+    let options = lsp::DidChangeWatchedFilesRegistrationOptions { watchers };
+    let registration = lsp::Registration {
+        id: "watched-files".into(),
+        method: lsp::LspNotificationMethod::WorkspaceDidChangeWatchedFiles.as_str().into(),
+        register_options: serde_json::to_value(options).ok(),
+    };
+    lsp::RegistrationParams { registrations: vec![registration] }
+}
+
 fn capabilities(encoding: Encoding) -> lsp::ServerCapabilities {
     let words = |words: &[&str]| Some(words.iter().map(|word| word.to_string()).collect::<Vec<_>>());
     lsp::ServerCapabilities {

@@ -19,6 +19,8 @@ pub struct Client {
     pub pictures: bool,
     /// Understands Markdown in hovers.
     pub markdown: bool,
+    /// Understands Markdown in what is said of completions.
+    pub markdown_docs: bool,
     /// Tells of files that change, if asked to.
     pub watches: bool,
     /// Shows how far something is.
@@ -27,6 +29,8 @@ pub struct Client {
     pub shows: bool,
     /// Takes links as origin and target.
     pub links: bool,
+    /// Folds whole lines only.
+    pub folds_lines: bool,
     /// Asks again for hints when told to.
     pub refreshes_hints: bool,
     /// Asks again for tokens when told to.
@@ -48,10 +52,12 @@ impl Client {
             // The parser of Visual Studio Code and its kin, which draws pictures.
             pictures: at("general/markdown/parser").is_some_and(|parser| parser == "marked"),
             markdown: has("textDocument/hover/contentFormat", "markdown"),
+            markdown_docs: has("textDocument/completion/completionItem/documentationFormat", "markdown"),
             watches: can("workspace/didChangeWatchedFiles/dynamicRegistration"),
             progress: can("window/workDoneProgress"),
             shows: can("window/showDocument/support"),
             links: can("textDocument/definition/linkSupport"),
+            folds_lines: can("textDocument/foldingRange/lineFoldingOnly"),
             refreshes_hints: can("workspace/inlayHint/refreshSupport"),
             refreshes_tokens: can("workspace/semanticTokens/refreshSupport"),
         }

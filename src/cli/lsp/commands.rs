@@ -6,11 +6,12 @@ use super::requests::read;
 use super::view::View;
 use super::work::{Answer, Failure, Told, guarded};
 use crate::cli::interrupt::Interrupt;
-use crossbeam_channel::Sender;
+use crossbeam_channel::{Receiver, Sender, unbounded};
 use gen_lsp_types::{ExecuteCommandParams, Uri};
 use lsp_server::{ErrorCode, RequestId};
 use serde::Deserialize;
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::thread::Builder;
@@ -71,13 +72,48 @@ pub fn wanted(params: Value) -> Answer<(String, About)> {
     Ok((command, about))
 }
 
-/// Starts to make a picture, and tells when it is done.
-pub fn render(order: Order) -> Answer<()> {
-    let work = move || {
+/// The pictures that are asked for. One thread makes them one after the other, since each takes all of the machine.
+#[derive(Default)]
+pub struct Renders {
+    orders: Option<Sender<Order>>,
+    /// The request with which the picture of a document was asked for last.
+    by_document: BTreeMap<Key, RequestId>,
+}
+
+impl Renders {
+    /// Has a picture made, and told of when it is done. The request that it takes the place of, which asked for a picture of
+    /// the same document.
+    pub fn start(&mut self, order: Order) -> Answer<Option<RequestId>> {
+        let orders = match &mut self.orders {
+            Some(orders) => orders,
+            none => none.insert(start()?),
+        };
+        let before = self.by_document.insert(order.key.clone(), order.id.clone());
+        // As many wait as requests may.
+        let _ = orders.send(order);
+        Ok(before)
+    }
+
+    /// A request is answered.
+    pub fn forget(&mut self, id: &RequestId) {
+        self.by_document.retain(|_, other| other != id);
+    }
+}
+
+/// Starts the thread that makes pictures.
+fn start() -> Answer<Sender<Order>> {
+    let (sender, orders) = unbounded();
+    let work = move || make_all(&orders);
+    let started = Builder::new().name("render".into()).stack_size(STACK).spawn(work);
+    let failure = |error| Failure::plain(format!("cannot start a thread: {error}"));
+    started.map(|_| sender).map_err(failure)
+}
+
+/// Until nobody asks any more.
+fn make_all(orders: &Receiver<Order>) {
+    for order in orders {
         let answer = guarded(|| render::render(&order)).and_then(|answer| answer);
         // Nobody listens at the end.
         let _ = order.told.send(Told::Answered(order.id, answer));
-    };
-    let started = Builder::new().name("render".into()).stack_size(STACK).spawn(work);
-    started.map(drop).map_err(|error| Failure::plain(format!("cannot start a thread: {error}")))
+    }
 }

@@ -1,7 +1,7 @@
 //! What is said of documents, to the client.
 
 use super::analyst::{Meaning, uri};
-use super::documents::{Key, MOST_TEXT};
+use super::documents::{Kept, Key, MOST_TEXT};
 use super::view::View;
 use gen_lsp_types as lsp;
 use rt_lang::diagnostic::{Code, Diagnostic, Severity};
@@ -10,27 +10,62 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The most that is told of one file: nobody reads more, and there may be as many as characters.
 const MOST: usize = 1_000;
 
-/// What is said of each file of an analysis; of the document itself also where it is nothing.
-pub type Found = BTreeMap<Key, Vec<lsp::Diagnostic>>;
+/// What is said of each file of an analysis: of the document itself, and of what it reads, also where it is nothing.
+pub type Found = BTreeMap<Key, Said>;
+
+/// What is said of a file.
+#[derive(Debug)]
+pub struct Said {
+    /// When its text was edited of which it is said; none where it was read as it is saved.
+    edited: Option<u64>,
+    all: Vec<lsp::Diagnostic>,
+    /// Which of it does not hold where another text imports this one, by their indices.
+    alone: BTreeSet<usize>,
+}
+
+impl Said {
+    /// Nothing yet.
+    fn new(view: &View, key: &Key) -> Said {
+        Said { edited: edited(view, key), all: vec![], alone: BTreeSet::new() }
+    }
+}
+
+/// When a file was edited last, if it is open.
+fn edited(view: &View, key: &Key) -> Option<u64> {
+    view.documents.get(key).map(|document| document.edited)
+}
 
 /// What an analysis says of each file.
 pub fn found(meaning: &Meaning, key: &Key, view: &View) -> Found {
-    let mut found = Found::from([(key.clone(), vec![])]);
-    if view.documents.get(key).is_some_and(|document| document.is_too_long) {
-        return Found::from([(key.clone(), vec![too_long()])]);
+    let mut own = Said::new(view, key);
+    let unknown = match view.documents.get(key).map(|document| document.kept) {
+        None | Some(Kept::Whole) => None,
+        Some(Kept::TooLong) => Some(too_long()),
+        Some(Kept::Lost) => Some(lost()),
+    };
+    let is_known = unknown.is_none();
+    own.all.extend(unknown);
+    let mut found = Found::from([(key.clone(), own)]);
+    if !is_known {
+        return found;
     }
+    for file in &meaning.reads {
+        found.entry(file.clone()).or_insert_with(|| Said::new(view, file));
+    }
+    let alone = meaning.analysis.alone();
     let mut more: BTreeMap<Key, usize> = BTreeMap::new();
-    for diagnostic in &meaning.analysis.diagnostics {
+    for (index, diagnostic) in meaning.analysis.diagnostics.iter().enumerate() {
         let file = meaning.key(diagnostic.primary.span.source);
-        let said: &mut Vec<_> = found.entry(file.clone()).or_default();
-        if said.len() < MOST {
-            said.push(convert(diagnostic, meaning, view));
+        let said = found.entry(file.clone()).or_insert_with(|| Said::new(view, &file));
+        if said.all.len() < MOST {
+            said.alone.extend(alone.contains(&index).then_some(said.all.len()));
+            said.all.push(convert(diagnostic, meaning, view));
         } else {
             *more.entry(file).or_default() += 1;
         }
     }
     for (file, count) in more {
-        found.entry(file).or_default().push(further(count));
+        found.entry(file).and_modify(|said| said.all.push(further(count)));
     }
     found
 }
@@ -42,9 +77,20 @@ fn too_long() -> lsp::Diagnostic {
         code: Some(lsp::Code::String(Code::E0406.as_str().into())),
         source: Some("rtc".into()),
         message: lsp::Message::String(format!(
-            "a document has at most {} MiB, this is longer",
+            "a document has at most {} MiB, this is longer\nhelp: where it was made shorter, close it and open it again",
             MOST_TEXT >> 20
         )),
+        ..lsp::Diagnostic::default()
+    }
+}
+
+/// Says that nobody knows what stands in a document.
+fn lost() -> lsp::Diagnostic {
+    let message = "the editor has told of an edit that makes no sense: close this document and open it again";
+    lsp::Diagnostic {
+        severity: Some(lsp::DiagnosticSeverity::Error),
+        source: Some("rtc".into()),
+        message: lsp::Message::String(message.into()),
         ..lsp::Diagnostic::default()
     }
 }
@@ -91,7 +137,8 @@ pub fn convert(diagnostic: &Diagnostic, meaning: &Meaning, view: &View) -> lsp::
 /// The message, what is said of the place, and the help, each on a line.
 fn words(diagnostic: &Diagnostic) -> String {
     let mut words = diagnostic.message.clone();
-    if !diagnostic.primary.text.is_empty() {
+    // Said once is enough.
+    if !diagnostic.message.contains(&*diagnostic.primary.text) {
         words.push_str(&format!(": {}", diagnostic.primary.text));
     }
     if let Some(help) = &diagnostic.help {
@@ -122,11 +169,23 @@ impl Board {
         found.into_keys().filter_map(|file| self.news(file, view)).collect()
     }
 
-    /// All that is said of a file: by its own analysis first, since what others say of it is mostly the same.
-    fn all(&self, file: &Key) -> Vec<lsp::Diagnostic> {
+    /// All that is said of a file as it is now: by its own analysis first, since what others say of it is mostly the same. None
+    /// where it is open and was not looked at as it is now.
+    fn all(&self, file: &Key, view: &View) -> Option<Vec<lsp::Diagnostic>> {
+        let edited = edited(view, file);
+        let is_current = |found: &&Found| found.get(file).is_some_and(|said| said.edited == edited);
+        if edited.is_some() && !self.by_document.get(file).is_some_and(|found| is_current(&found)) {
+            return None;
+        }
         let own = self.by_document.get(file).into_iter();
-        let others = self.by_document.iter().filter(|(key, _)| *key != file).map(|(_, found)| found);
-        let said = own.chain(others).filter_map(|found| found.get(file)).flatten();
+        let others = || self.by_document.iter().filter(|(key, _)| *key != file).map(|(_, found)| found);
+        let is_imported = others().any(|found| found.contains_key(file));
+        let said = own.chain(others()).filter(is_current).filter_map(|found| found.get(file));
+        let holds = |said: &Said, index: usize| !is_imported || !said.alone.contains(&index);
+        let said = said.flat_map(|said| {
+            let all = said.all.iter().enumerate();
+            all.filter(move |(index, _)| holds(said, *index)).map(|(_, diagnostic)| diagnostic)
+        });
         let mut seen = BTreeSet::new();
         let place = |range: lsp::Range| {
             [range.start.line, range.start.character, range.end.line, range.end.character]
@@ -134,12 +193,12 @@ impl Board {
         let is_new = |diagnostic: &&lsp::Diagnostic| {
             seen.insert((place(diagnostic.range), format!("{:?}", diagnostic.message)))
         };
-        said.filter(is_new).cloned().collect()
+        Some(said.filter(is_new).cloned().collect())
     }
 
     /// What is to be told of a file, if that is not what was told.
     fn news(&mut self, file: Key, view: &View) -> Option<lsp::PublishDiagnosticsParams> {
-        let all = self.all(&file);
+        let all = self.all(&file, view)?;
         let version = view.documents.get(&file).map(|document| document.version);
         let told = self.told.get(&file);
         let nothing_new = match told {

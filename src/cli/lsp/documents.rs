@@ -5,7 +5,9 @@
 
 use super::document::{Encoding, Place, Text};
 use super::uri;
-use gen_lsp_types::{Position, Range, TextDocumentContentChangeEvent as Change, Uri};
+use gen_lsp_types::{Position, Range, Uri, VersionedTextDocumentIdentifier};
+use serde::Deserialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -46,6 +48,53 @@ impl Key {
     }
 }
 
+/// Whether the text of a document is known. Where it is not, the text is empty, and edits make nothing of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kept {
+    /// It is.
+    Whole,
+    /// There is more of it than is kept.
+    TooLong,
+    /// It was edited in a way that cannot be understood.
+    Lost,
+}
+
+/// How a document was edited. The changes are read one by one: what cannot be read of one is not left out in silence.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Changed {
+    /// Which, and what the client calls what it is now.
+    pub text_document: VersionedTextDocumentIdentifier,
+    #[serde(default)]
+    content_changes: Value,
+}
+
+/// A change of a text, or of a part of it.
+enum Change {
+    Part(Part),
+    Whole(String),
+}
+
+#[derive(Deserialize)]
+struct Part {
+    range: Range,
+    text: String,
+}
+
+impl Change {
+    /// As the client tells it; none where it makes no sense. One that has a range is never of the whole text, whatever the
+    /// range is.
+    fn read(mut change: Value) -> Option<Change> {
+        if change.get("range").is_some_and(|range| !range.is_null()) {
+            return serde_json::from_value(change).ok().map(Change::Part);
+        }
+        match change.get_mut("text").map(Value::take) {
+            Some(Value::String(text)) => Some(Change::Whole(text)),
+            _ => None,
+        }
+    }
+}
+
 /// A document at some moment.
 #[derive(Clone, Debug)]
 pub struct Document {
@@ -55,10 +104,12 @@ pub struct Document {
     pub version: i32,
     /// What it holds.
     pub text: Text,
-    /// Whether it holds more than is kept. Its text is empty then.
-    pub is_too_long: bool,
+    /// Whether that is all.
+    pub kept: Kept,
     /// New with every change of it or of what it reads.
     pub stamp: u64,
+    /// The stamp with which it was edited last.
+    pub edited: u64,
     newest: Arc<AtomicU64>,
 }
 
@@ -69,21 +120,33 @@ impl Document {
     }
 
     fn take(&mut self, text: String) {
-        self.is_too_long = text.len() > MOST_TEXT;
-        self.text = Text::new(if self.is_too_long { String::new() } else { text });
+        if text.len() > MOST_TEXT {
+            return self.lose(Kept::TooLong);
+        }
+        (self.kept, self.text) = (Kept::Whole, Text::new(text));
+    }
+
+    fn lose(&mut self, kept: Kept) {
+        (self.kept, self.text) = (kept, Text::new(String::new()));
+    }
+
+    fn change(&mut self, change: Value, encoding: Encoding) {
+        match Change::read(change) {
+            Some(Change::Whole(text)) => self.take(text),
+            // Of a text that is not known no part is.
+            Some(Change::Part(_)) if self.kept != Kept::Whole => {}
+            Some(Change::Part(Part { range, text })) => self.edit(range, &text, encoding),
+            None => self.lose(Kept::Lost),
+        }
     }
 
     fn edit(&mut self, range: Range, with: &str, encoding: Encoding) {
-        if self.is_too_long {
-            return;
-        }
         let byte = |position: Position| self.text.byte(place(position), encoding);
         let (start, end) = (byte(range.start), byte(range.end));
         // One that is the wrong way round is the same range.
         let range = start.min(end)..start.max(end);
         if self.text.whole().len() - range.len() + with.len() > MOST_TEXT {
-            self.is_too_long = true;
-            self.text = Text::new(String::new());
+            self.lose(Kept::TooLong);
         } else {
             self.text.replace(range, with);
         }
@@ -124,7 +187,9 @@ impl Documents {
         self.close(&key);
         let text_of = Text::new(String::new());
         let newest = Arc::default();
-        let mut document = Document { uri, version, text: text_of, is_too_long: false, stamp: 0, newest };
+        let kept = Kept::Whole;
+        let mut document =
+            Document { uri, version, text: text_of, kept, stamp: 0, edited: self.stamps + 1, newest };
         document.take(text);
         self.open.insert(key.clone(), Arc::new(document));
         self.touch(&key);
@@ -132,18 +197,15 @@ impl Documents {
     }
 
     /// Edits a document, one change after the other. Whether it is open.
-    pub fn change(&mut self, key: &Key, version: i32, changes: Vec<Change>, encoding: Encoding) -> bool {
+    pub fn change(&mut self, key: &Key, changed: Changed, encoding: Encoding) -> bool {
         let Some(document) = self.open.get_mut(key) else { return false };
         let document = Arc::make_mut(document);
-        for change in changes {
-            match change {
-                Change::TextDocumentContentChangePartial(part) => {
-                    document.edit(part.range, &part.text, encoding);
-                }
-                Change::TextDocumentContentChangeWholeDocument(whole) => document.take(whole.text),
-            }
+        match changed.content_changes {
+            Value::Array(changes) => changes.into_iter().for_each(|change| document.change(change, encoding)),
+            _ => document.lose(Kept::Lost),
         }
-        document.version = version;
+        document.version = changed.text_document.version;
+        document.edited = self.stamps + 1;
         self.touch(key);
         true
     }
@@ -163,5 +225,49 @@ impl Documents {
         if let Some(document) = self.open.remove(key) {
             document.newest.store(self.stamps, Ordering::Relaxed);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    /// A document of which a text is left by some changes, and whether that is known.
+    fn changed(text: &str, changes: &[Value]) -> (String, Kept) {
+        let mut documents = Documents::default();
+        let uri = "untitled:a";
+        let key = documents.open(uri.to_string().into(), 1, text.into());
+        let changed = json!({ "textDocument": { "uri": uri, "version": 2 }, "contentChanges": changes });
+        assert!(documents.change(&key, serde_json::from_value(changed).unwrap(), Encoding::Utf16));
+        let document = documents.get(&key).unwrap();
+        (document.text.whole().to_string(), document.kept)
+    }
+
+    fn put(line: i64, text: &str) -> Value {
+        let at = json!({ "line": line, "character": 0 });
+        json!({ "range": { "start": at, "end": at }, "text": text })
+    }
+
+    #[test]
+    fn a_change_with_a_range_that_makes_no_sense_is_not_the_whole_text() {
+        for line in [-1, 1 << 32, i64::MIN] {
+            assert_eq!(changed("ab", &[put(line, "x")]), (String::new(), Kept::Lost), "{line}");
+        }
+        for odd in [json!({}), json!(null), json!({ "text": 3 }), json!({ "range": [], "text": "x" })] {
+            assert_eq!(changed("ab", &[odd.clone(), put(0, "x")]), (String::new(), Kept::Lost), "{odd}");
+            // The whole text is known, whatever was before.
+            assert_eq!(changed("ab", &[odd, json!({ "text": "c" })]), ("c".into(), Kept::Whole));
+        }
+        assert_eq!(changed("ab", &[put(0, "x"), put(7, "y")]), ("xaby".into(), Kept::Whole));
+    }
+
+    #[test]
+    fn a_text_that_was_too_long_is_not_known_until_it_is_told() {
+        let long = "x".repeat(MOST_TEXT);
+        let cut = json!({ "range": { "start": { "line": 0, "character": 1 }, "end": { "line": 9, "character": 0 } }, "text": "" });
+        assert_eq!(changed(&long, &[put(0, "y"), cut.clone()]), (String::new(), Kept::TooLong));
+        assert_eq!(changed(&long, &[cut, put(0, "y")]), ("yx".into(), Kept::Whole));
+        assert_eq!(changed(&long, &[put(0, "y"), json!({ "text": "c" })]), ("c".into(), Kept::Whole));
     }
 }

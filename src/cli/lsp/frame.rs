@@ -1,14 +1,17 @@
 //! Messages on a stream of bytes: a head with the length, an empty line, the body.
 //!
-//! Whatever comes in, the next message behind it is found: a body that is too long is passed over, a head without a
-//! length is left behind, and a line that never ends is not kept.
+//! Whatever comes in, a message behind it is found: a body that is too long is passed over, a head without a length is left
+//! behind, and a line that never ends is not kept. A body whose length was wrong may end in the middle of a line, so the name
+//! of the length is looked for anywhere in one: the last one counts.
 
 use std::io::{self, BufRead, Read, Write};
 
 /// The longest body, in bytes: a text of 10 MB with room for what JSON makes of it, several times over.
 pub const MOST_BODY: u64 = 64 << 20;
-/// The longest line of a head, in bytes.
+/// The most of a line that is looked at at once, in bytes.
 const MOST_LINE: u64 = 4096;
+/// What stands before the length, in small letters.
+const LENGTH: &[u8] = b"content-length:";
 
 /// What stands next on a stream.
 #[derive(Debug, PartialEq, Eq)]
@@ -45,36 +48,60 @@ fn head(input: &mut impl BufRead) -> io::Result<Option<Result<u64, String>>> {
     let mut length = Err("a message begins with its `Content-Length`".to_string());
     let mut begun = false;
     loop {
-        let Some(line) = line(input)? else { return Ok(None) };
-        let line = line.trim_ascii();
-        if line.is_empty() {
-            if begun {
-                return Ok(Some(length));
-            }
+        match line(input)? {
+            None => return Ok(None),
+            Some(Line::Empty) if begun => return Ok(Some(length)),
             // Line ends between messages do no harm.
-            continue;
-        }
-        begun = true;
-        let text = String::from_utf8_lossy(line);
-        let Some((name, value)) = text.split_once(':') else { continue };
-        if name.trim().eq_ignore_ascii_case("Content-Length") {
-            length = value.trim().parse().map_err(|_| format!("`{}` is no length", value.trim()));
+            Some(Line::Empty) => {}
+            Some(Line::Other) => begun = true,
+            Some(Line::Length(value)) => {
+                begun = true;
+                let value = String::from_utf8_lossy(value.trim_ascii());
+                length = value.parse().map_err(|_| format!("`{value}` is no length"));
+            }
         }
     }
 }
 
-/// The next line as far as it is kept; none at the end of the stream.
-fn line(input: &mut impl BufRead) -> io::Result<Option<Vec<u8>>> {
-    let mut line = vec![];
-    input.take(MOST_LINE).read_until(b'\n', &mut line)?;
-    if line.last() == Some(&b'\n') {
-        return Ok(Some(line));
+/// A line of a head.
+enum Line {
+    /// Nothing but spaces.
+    Empty,
+    /// What stands behind the name of the length.
+    Length(Vec<u8>),
+    Other,
+}
+
+/// The next line; none at the end of the stream.
+fn line(input: &mut impl BufRead) -> io::Result<Option<Line>> {
+    let (mut is_empty, mut length) = (true, None);
+    // What a name may have begun in before more is read.
+    let mut part = vec![];
+    loop {
+        let kept = part.len();
+        input.take(MOST_LINE).read_until(b'\n', &mut part)?;
+        let ends = part.ends_with(b"\n");
+        if !ends && ((part.len() - kept) as u64) < MOST_LINE {
+            return Ok(None);
+        }
+        is_empty &= part.trim_ascii().is_empty();
+        match part.windows(LENGTH.len()).rposition(|name| name.eq_ignore_ascii_case(LENGTH)) {
+            Some(at) => length = Some(part[at + LENGTH.len()..].to_vec()),
+            // A number with so much behind it is none.
+            None => length
+                .iter_mut()
+                .filter(|value| (value.len() as u64) < MOST_LINE)
+                .for_each(|value| value.extend(&part[kept..])),
+        }
+        if ends {
+            return Ok(Some(match length {
+                Some(value) => Line::Length(value),
+                None if is_empty => Line::Empty,
+                None => Line::Other,
+            }));
+        }
+        part.drain(..part.len().saturating_sub(LENGTH.len() - 1));
     }
-    if (line.len() as u64) < MOST_LINE {
-        return Ok(None);
-    }
-    input.skip_until(b'\n')?;
-    Ok(Some(line))
 }
 
 /// Writes a message.
@@ -121,9 +148,26 @@ mod tests {
     }
 
     #[test]
+    fn behind_a_body_of_another_length_the_next_message_is_found() {
+        let long = "x".repeat(10_000);
+        for bad in ["Content-Length: 1e3\r\n\r\n{\"a\": 1}", "Content-Length: 3\r\n\r\n{\"a\"", &long] {
+            // Wherever the name stands between what is read at once and what is read next.
+            for more in 0..40 {
+                let bytes =
+                    format!("{bad}{}content-LENGTH: 2\r\n\r\nok", " ".repeat(more + 4050 * (more % 2)));
+                assert_eq!(all(bytes.as_bytes()).last(), Some(&body("ok")), "{bad:.30} {more}");
+            }
+        }
+        let twice = format!("Content-Length: 9{long}Content-Length: 2\r\n\r\nok");
+        assert_eq!(all(twice.as_bytes()), [body("ok")]);
+    }
+
+    #[test]
     fn a_long_line_is_not_kept() {
         let bytes = [&[b'x'; 1_000_000][..], b"\nContent-Length: 2\r\n\r\nok"].concat();
         assert_eq!(all(&bytes), [body("ok")]);
+        let spaces = [&[b'x'; 1_000][..], &[b' '; 10_000], b"\nContent-Length: 2\r\n\r\nok"].concat();
+        assert_eq!(all(&spaces), [body("ok")]);
     }
 
     #[test]

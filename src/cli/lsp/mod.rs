@@ -12,10 +12,11 @@
 //! | [`client`], [`capabilities`] | what the two sides can do |
 //! | [`document`], [`documents`], [`uri`] | the texts as the client edits them, and their addresses |
 //! | [`view`], [`world`] | what was known when something was asked, and the files around a document |
+//! | [`reads`] | which documents mean something else when a file changes |
 //! | [`work`], [`analyst`] | the threads that answer, and what documents mean |
 //! | [`requests`] | one question of the protocol each |
 //! | [`diagnostics`], [`pages`] | what is said of documents, and where it is explained |
-//! | [`edits`] | what is different between two texts |
+//! | [`edits`] | edits that make one text of another, and of several documents |
 //! | [`commands`], [`render`], [`preview`] | what a person can have done |
 
 mod analyst;
@@ -30,6 +31,7 @@ mod frame;
 mod message;
 mod pages;
 mod preview;
+mod reads;
 mod render;
 mod requests;
 mod server;

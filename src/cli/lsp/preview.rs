@@ -1,11 +1,12 @@
 //! The preview of a document, saved or not, served from this process: it follows what stands in the editor, a click on a
 //! place of the page leads there, and the pixels are lit that show what stands at the cursor.
 
-use super::commands::Order;
+use super::commands::{About, Order};
 use super::documents::{Key, place};
+use super::requests::read;
 use super::uri::uri_of;
 use super::view::View;
-use super::work::{Answer, Failure, Told};
+use super::work::{Answer, Ask, Asked, Failure, Question, Told};
 use crate::cli::Problem;
 use crate::cli::args::{Arguments, Command, Reading};
 use crate::cli::files::Disk;
@@ -16,12 +17,19 @@ use crate::cli::terminal::Terminal;
 use clap::Parser;
 use crossbeam_channel::Sender;
 use gen_lsp_types::{self as lsp, Position};
+use lsp_server::RequestId;
 use rt_lang::lower::Overrides;
 use rt_lang::source::Source;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
+
+/// The most previews that are served at once: each has threads of its own.
+const MOST: usize = 16;
+
+/// Has the client show something.
+pub const SHOW: lsp::LspRequestMethod<'static> = lsp::LspRequestMethod::WindowShowDocument;
 
 /// What is open now, for previews that read it on their own threads.
 pub type Newest = Arc<Mutex<Arc<View>>>;
@@ -30,12 +38,34 @@ pub type Newest = Arc<Mutex<Arc<View>>>;
 pub struct Previews {
     newest: Newest,
     served: BTreeMap<(Key, Option<String>), Live>,
+    /// Of whose document is looked whether it has the camera.
+    wanted: BTreeMap<RequestId, Order>,
 }
 
 impl Previews {
     /// None yet.
     pub fn new(view: Arc<View>) -> Previews {
-        Previews { newest: Arc::new(Mutex::new(view)), served: BTreeMap::new() }
+        Previews { newest: Arc::new(Mutex::new(view)), served: BTreeMap::new(), wanted: BTreeMap::new() }
+    }
+
+    /// Keeps an order until it is known whether there is what it is about, and gives what finds that out.
+    pub fn want(&mut self, order: Order) -> Question {
+        let Order { id, about, view, cancelled, .. } = &order;
+        let params = json!({ "uri": about.uri, "camera": about.camera });
+        let (view, cancelled) = (view.clone(), cancelled.clone());
+        let question = Question { id: id.clone(), run: has_camera, params, view, cancelled };
+        self.wanted.insert(order.id.clone(), order);
+        question
+    }
+
+    /// The order of a request that was kept, which is forgotten.
+    pub fn wanted(&mut self, id: &RequestId) -> Option<Order> {
+        self.wanted.remove(id)
+    }
+
+    /// Serves those of a document no more.
+    pub fn close(&mut self, key: &Key) {
+        self.served.retain(|(document, _), _| document != key);
     }
 
     /// Serves a preview, or finds the one that is served, and gives its address.
@@ -46,6 +76,9 @@ impl Previews {
         let served = (key.clone(), about.camera.clone());
         if let Some(live) = self.served.get(&served) {
             return Ok(live.url.clone());
+        }
+        if self.served.len() >= MOST {
+            return Err(Failure::plain(format!("{MOST} previews are served already")));
         }
         *lock(&self.newest) = view.clone();
         let wrong = |problem: Problem| Failure::plain(problem.message);
@@ -85,6 +118,24 @@ impl Previews {
     }
 }
 
+/// Refuses a camera that a document does not have, and does nothing else.
+fn has_camera(asked: &mut Asked, params: Value) -> Answer<Value> {
+    let About { uri, camera } = read(params)?;
+    // Of a text with errors it is not known, and one that is not open is looked at as it is shown.
+    let (Some(camera), Some(Ok(meaning))) = (camera, asked.meaning_of(&Key::of(&uri))) else {
+        return Ok(Value::Null);
+    };
+    let Some(cameras) = meaning.analysis.cameras().filter(|cameras| !cameras.contains(&camera)) else {
+        return Ok(Value::Null);
+    };
+    let there = match cameras {
+        [] => "none has a name".to_string(),
+        [name] => format!("there is `{name}`"),
+        names => format!("there are `{}`", names.join("`, `")),
+    };
+    Err(Failure::plain(format!("no camera is called `{camera}`: {there}")))
+}
+
 /// The flags of a command that would serve it.
 fn flags(path: &Path, camera: Option<&str>) -> Answer<crate::cli::args::Watch> {
     let mut words = vec!["rtc".into(), "watch".into(), "--serve".into(), "--quiet".into()];
@@ -101,7 +152,8 @@ fn load(newest: &Newest, key: &Key, reading: &Reading, overrides: &Overrides) ->
     let view = lock(newest).clone();
     let Some(path) = key.path() else { return Err(Problem::new("this has no place on the disk")) };
     let own = path.parent().unwrap_or(Path::new("/"));
-    let root = view.session.root.as_deref().filter(|root| path.starts_with(root)).unwrap_or(own);
+    let root = view.root_of(path);
+    let root = root.as_deref().unwrap_or(own);
     let Some(document) = view.documents.get(key) else {
         return scene::load(path, &Reading { root: Some(root.into()), ..reading.clone() }, overrides);
     };
@@ -139,20 +191,16 @@ fn show(newest: &Newest, told: &Sender<Told>, opened: &Opened) {
         take_focus: Some(true),
         selection: Some(lsp::Range { start: position, end: position }),
     };
-    let method = lsp::LspRequestMethod::WindowShowDocument.as_str().to_string();
-    let _ = told.send(Told::Asks(method, json!(params)));
+    let _ = told.send(Told::Asks(Ask::new(SHOW, json!(params))));
 }
 
-/// Asks the client to open a page, or the browser itself where it cannot.
-pub fn browse(url: &str, view: &View, told: &Sender<Told>) -> Answer<Value> {
+/// What asks the client to open a page; where it cannot, the browser itself is told to.
+pub fn browse(url: &str, view: &View) -> Answer<Option<Value>> {
     if view.session.client.shows {
-        let method = lsp::LspRequestMethod::WindowShowDocument.as_str().to_string();
-        let _ = told.send(Told::Asks(method, json!({ "uri": url, "external": true })));
-    } else {
-        let problem = |_| Failure::plain(format!("no browser opens: open {url} yourself"));
-        open::that_detached(url).map_err(problem)?;
+        return Ok(Some(json!({ "uri": url, "external": true })));
     }
-    Ok(json!({ "url": url }))
+    let problem = |_| Failure::plain(format!("no browser opens: open {url} yourself"));
+    open::that_detached(url).map(|()| None).map_err(problem)
 }
 
 /// What is there is replaced as a whole.

@@ -1,28 +1,37 @@
 //! Making the picture of a document, saved or not, beside where it is saved.
 
 use super::commands::Order;
-use super::work::{Answer, Failure, Told};
+use super::documents::Key;
+use super::work::{Answer, Ask, Failure, Told};
 use super::world::World;
-use crate::cli::build;
+use crate::cli::Problem;
+use crate::cli::build::{self, refuse_inputs_as_outputs};
 use crate::cli::target::Target;
 use gen_lsp_types as lsp;
 use lsp::LspNotificationMethod as Notified;
+use lsp_server::RequestId;
 use rt_lang::compile;
 use rt_lang::diagnostic::Severity;
 use rt_lang::lower::Overrides;
 use rt_lang::render::Control;
 use rt_lang::source::Sources;
 use serde_json::{Value, json};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// How often is told how far it is.
 const PERIOD: Duration = Duration::from_millis(100);
+/// What tokens of progress begin with; the id of the request follows, as JSON has it.
+const TOKEN: &str = "rtc.render ";
 
 /// Makes it, and says where it is.
 pub fn render(order: &Order) -> Answer<Value> {
-    let Order { view, key, about, interrupt, .. } = order;
+    let Order { view, key, about, interrupt, cancelled, .. } = order;
+    if cancelled.load(Ordering::Relaxed) {
+        return Err(Failure::cancelled());
+    }
     let path = key.path().ok_or_else(|| Failure::plain("save it first: its picture goes beside it"))?;
     let target = Target::beside(path);
     let world = World::around(view, key);
@@ -32,10 +41,22 @@ pub fn render(order: &Order) -> Answer<Value> {
     let mut options = view.session.options();
     options.overrides = Overrides { camera: about.camera.clone(), ..Overrides::default() };
     let compiled = compile(&world, &mut sources, id, &options);
-    let errors = compiled.diagnostics.iter().filter(|said| said.severity() == Severity::Error).count();
-    let from = compiled.provenance(&sources).ok_or_else(|| match errors {
-        1 => Failure::plain("the scene has an error"),
-        errors => Failure::plain(format!("the scene has {errors} errors")),
+    let wrong = |problem: Problem| Failure::plain(problem.message);
+    let read = world
+        .asked()
+        .iter()
+        .filter_map(Key::path)
+        .map(PathBuf::from)
+        .chain([path.into()])
+        .collect::<Vec<_>>();
+    refuse_inputs_as_outputs(&read, std::slice::from_ref(&target.path)).map_err(wrong)?;
+    let mut errors = compiled.diagnostics.iter().filter(|said| said.severity() == Severity::Error);
+    let from = compiled.provenance(&sources).ok_or_else(|| {
+        let first = errors.next().map_or("it is not finished", |error| error.message.as_str());
+        Failure::plain(match errors.count() {
+            0 => format!("the scene has an error: {first}"),
+            more => format!("the scene has {} errors, the first: {first}", more + 1),
+        })
     })?;
     let control = Arc::new(Control::new());
     let name = target.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -50,7 +71,7 @@ pub fn render(order: &Order) -> Answer<Value> {
             Ok(json!({ "path": target.path.display().to_string() }))
         }
         Ok(None) => Err(Failure::cancelled()),
-        Err(problem) => Err(Failure::plain(problem.message)),
+        Err(problem) => Err(wrong(problem)),
     }
 }
 
@@ -67,30 +88,60 @@ fn beside<T>(order: &Order, control: &Control, name: &str, work: impl FnOnce() -
 }
 
 fn watch(order: &Order, control: &Control, name: &str, done: &AtomicBool) {
-    let token = format!("rtc.render {}", order.id);
-    let shows = order.view.session.client.progress;
-    let progress = |value: Value| {
-        if shows {
-            tell(order, Notified::Progress, json!({ "token": token, "value": value }));
-        }
-    };
-    if shows {
-        let params = json!({ "token": token });
-        let method = lsp::LspRequestMethod::WindowWorkDoneProgressCreate.as_str();
-        let _ = order.told.send(Told::Asks(method.into(), params));
+    let token = token(&order.id);
+    let progress = |value: Value| tell(order, Notified::Progress, json!({ "token": token, "value": value }));
+    // Nothing is told under a token before the client has taken it.
+    let create = Ask::new(lsp::LspRequestMethod::WindowWorkDoneProgressCreate, json!({ "token": token }));
+    let (agreed, mut begun) = (create.agreed.clone(), false);
+    if order.view.session.client.progress {
+        let _ = order.told.send(Told::Asks(create));
     }
-    progress(json!({ "kind": "begin", "title": name, "percentage": 0 }));
     while !done.load(Ordering::Relaxed) {
         if order.cancelled.load(Ordering::Relaxed) {
             control.cancel();
         }
         let far = control.progress();
-        progress(json!({ "kind": "report", "percentage": 100 * far.done / far.total.max(1) }));
+        let percentage = 100 * far.done / far.total.max(1);
+        if begun {
+            progress(json!({ "kind": "report", "percentage": percentage }));
+        } else if agreed.load(Ordering::Relaxed) {
+            begun = true;
+            progress(
+                json!({ "kind": "begin", "title": name, "cancellable": true, "percentage": percentage }),
+            );
+        }
         std::thread::park_timeout(PERIOD);
     }
-    progress(json!({ "kind": "end" }));
+    if begun {
+        progress(json!({ "kind": "end" }));
+    }
+}
+
+/// What the progress of a request is told under.
+fn token(id: &RequestId) -> String {
+    format!("{TOKEN}{}", json!(id))
+}
+
+/// The request whose progress is told under a token; none under one that was not given here.
+pub fn request_of(token: &lsp::ProgressToken) -> Option<RequestId> {
+    let lsp::ProgressToken::String(token) = token else { return None };
+    serde_json::from_str(token.strip_prefix(TOKEN)?).ok()
 }
 
 fn tell(order: &Order, method: Notified, params: Value) {
     let _ = order.told.send(Told::Notifies(method.as_str().into(), params));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_token_leads_to_its_request() {
+        for id in [RequestId::from(-7), "7".to_string().into(), "a \"b\"\n\u{0}é".to_string().into()] {
+            assert_eq!(request_of(&lsp::ProgressToken::String(token(&id))), Some(id));
+        }
+        assert_eq!(request_of(&lsp::ProgressToken::Int(7)), None);
+        assert_eq!(request_of(&lsp::ProgressToken::String("rtc.render ".into())), None);
+    }
 }

@@ -1,17 +1,21 @@
 //! What a message leads to. The one thread that knows all documents never works for long: whatever takes time is done by
 //! others, with the documents as they were.
 
-use super::capabilities::initialized;
+mod changes;
+
+use super::capabilities::{initialized, watched};
 use super::client::{Client, encoding};
-use super::commands::{self, Order};
+use super::commands::{self, Order, Renders};
 use super::diagnostics::Board;
-use super::documents::{Documents, Key};
+use super::documents::{Changed, Documents, Key};
 use super::pages::Pages;
 use super::preview::{self, Previews};
-use super::requests::{self, read};
+use super::reads::Reads;
+use super::render;
+use super::requests::{self, Lane, read};
 use super::uri::path_of;
 use super::view::{Session, View};
-use super::work::{Answer, Desk, Failure, Question, Told};
+use super::work::{Answer, Ask, Desk, Failure, Question, Told, guarded};
 use crate::cli::Exit;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::live::watcher::Watcher;
@@ -19,8 +23,7 @@ use crossbeam_channel::{Receiver, Sender, bounded, select};
 use gen_lsp_types as lsp;
 use lsp::LspNotificationMethod as Method;
 use lsp_server::{Connection, ErrorCode, Message, Notification, ReqQueue, Request, RequestId, Response};
-use serde_json::Value;
-use std::collections::{BTreeMap, BTreeSet};
+use serde_json::{Value, json};
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -55,16 +58,15 @@ pub struct Server {
     tell: Sender<Told>,
     interrupt: Interrupt,
     previews: Previews,
+    renders: Renders,
     /// Tells of files that change, where the client does not.
     watcher: Option<Watcher>,
-    /// What waits for an answer, each with what says that none is wanted.
-    waiting: ReqQueue<Arc<AtomicBool>, ()>,
+    /// What waits for an answer: of the client each with what says that none is wanted, and of the server each with what says
+    /// that there was one.
+    waiting: ReqQueue<Arc<AtomicBool>, Arc<AtomicBool>>,
     count: usize,
     board: Board,
-    /// What each open document is made of, as far as that is known.
-    reads: BTreeMap<Key, BTreeSet<Key>>,
-    /// When files changed last, as documents are stamped.
-    changed: BTreeMap<Key, u64>,
+    reads: Reads,
 }
 
 impl Server {
@@ -75,7 +77,7 @@ impl Server {
     /// Where the system gives no more threads.
     pub fn new(connection: Connection, root: Option<PathBuf>, interrupt: Interrupt) -> io::Result<Server> {
         let (tell, told) = bounded(QUEUE);
-        let (client, pages) = (Client::default(), Pages::default());
+        let (client, pages) = (Client::default(), Pages::new(interrupt.clone()));
         let (encoding, memory) = (encoding(&Value::Null), Arc::default());
         let session = Session { client, encoding, root, pages, memory };
         let view = View { session: Arc::new(session), documents: Documents::default(), folders: vec![] };
@@ -84,6 +86,7 @@ impl Server {
             connection,
             life: Life::New,
             previews: Previews::new(view.clone()),
+            renders: Renders::default(),
             view,
             watcher: None,
             desk: Desk::start(&tell)?,
@@ -93,8 +96,7 @@ impl Server {
             waiting: ReqQueue::default(),
             count: 0,
             board: Board::default(),
-            reads: BTreeMap::new(),
-            changed: BTreeMap::new(),
+            reads: Reads::default(),
         })
     }
 
@@ -109,18 +111,35 @@ impl Server {
                     Err(_) => break,
                 },
                 recv(told) -> told => match told {
-                    Ok(told) => self.hear(told),
+                    Ok(told) => {
+                        // What goes wrong here is reported, and the server lives.
+                        let _ = guarded(|| self.hear(told));
+                    }
                     Err(_) => break,
                 },
             }
         }
-        // Others may hold what was known, and with it the pages, until the process ends.
-        self.view.session.pages.tidy();
+        // Others may be at work until the process ends.
+        self.interrupt.close();
         // The protocol's codes: 1 for an end that was not announced.
         if self.life == Life::Ending { Exit::Done } else { Exit::Diagnostics }
     }
 
+    /// Takes a message in. Where that panics, whoever asked is answered, and the server lives.
     fn take(&mut self, message: Message) {
+        let id = match &message {
+            Message::Request(request) => Some(request.id.clone()),
+            _ => None,
+        };
+        if let (Err(failure), Some(id)) = (guarded(|| self.do_what_it_says(message)), id) {
+            match self.waiting.incoming.is_completed(&id) {
+                true => self.send(id, Err(failure)),
+                false => self.finish(id, Err(failure)),
+            }
+        }
+    }
+
+    fn do_what_it_says(&mut self, message: Message) {
         match message {
             Message::Request(request) => self.request(request),
             Message::Notification(notification) => {
@@ -128,7 +147,10 @@ impl Server {
                 let _ = self.notification(notification);
             }
             Message::Response(response) => {
-                self.waiting.outgoing.complete(response.id);
+                let asked = self.waiting.outgoing.complete(response.id);
+                if let Some(agreed) = asked.filter(|_| response.response_result.is_ok()) {
+                    agreed.store(true, Ordering::Relaxed);
+                }
             }
         }
     }
@@ -191,17 +213,33 @@ impl Server {
         let (view, told, interrupt) = (self.view.clone(), self.tell.clone(), self.interrupt.clone());
         let order = Order { id, key: Key::of(&about.uri), about, view, cancelled, told, interrupt };
         match command.as_str() {
-            commands::PREVIEW => self.preview(&order),
-            _ => commands::render(order),
+            commands::PREVIEW if order.about.camera.is_some() => {
+                let question = self.previews.want(order);
+                self.desk.ask(Lane::Meaning, question);
+                Ok(())
+            }
+            commands::PREVIEW => {
+                let address = self.preview(&order)?;
+                self.finish(order.id, Ok(address));
+                Ok(())
+            }
+            _ => {
+                if let Some(before) = self.renders.start(order)? {
+                    self.cancel(before);
+                }
+                Ok(())
+            }
         }
     }
 
-    /// Shows the picture of a document from now on.
-    fn preview(&mut self, order: &Order) -> Answer<()> {
+    /// Shows the picture of a document from now on, and gives the address.
+    fn preview(&mut self, order: &Order) -> Answer<Value> {
         let url = self.previews.start(order)?;
-        let answer = preview::browse(&url, &order.view, &order.told);
-        self.finish(order.id.clone(), answer);
-        Ok(())
+        // Not through the queue of what is told: who hears it would wait for itself.
+        if let Some(page) = preview::browse(&url, &order.view)? {
+            self.ask_client(Ask::new(preview::SHOW, page));
+        }
+        Ok(json!({ "url": url }))
     }
 
     /// Waits for an answer from somebody else, who may see whether it is still wanted.
@@ -216,6 +254,7 @@ impl Server {
     fn finish(&mut self, id: RequestId, answer: Answer<Value>) {
         if self.waiting.incoming.complete(&id).is_some() {
             self.count -= 1;
+            self.renders.forget(&id);
             self.send(id, answer);
         }
     }
@@ -234,7 +273,7 @@ impl Server {
             client: Client::read(params),
             encoding: encoding(params),
             root: view.session.root.clone(),
-            pages: Pages::default(),
+            pages: Pages::new(self.interrupt.clone()),
             memory: Arc::default(),
         });
         serde_json::to_value(initialized(view.session.encoding))
@@ -249,18 +288,27 @@ impl Server {
         }
         match method {
             Method::Initialized => self.watch(),
-            Method::CancelRequest => self.cancel(read(params)?),
+            Method::CancelRequest => match read::<lsp::CancelParams>(params)?.id {
+                lsp::Id::Int(id) => self.cancel(id.into()),
+                lsp::Id::String(id) => self.cancel(id.into()),
+            },
+            Method::WindowWorkDoneProgressCancel => {
+                let lsp::WorkDoneProgressCancelParams { token } = read(params)?;
+                if let Some(id) = render::request_of(&token) {
+                    self.cancel(id);
+                }
+            }
             Method::TextDocumentDidOpen => {
                 let lsp::DidOpenTextDocumentParams { text_document: item } = read(params)?;
                 let key = Arc::make_mut(&mut self.view).documents.open(item.uri, item.version, item.text);
                 self.changed_at(vec![key]);
             }
             Method::TextDocumentDidChange => {
-                let lsp::DidChangeTextDocumentParams { text_document, content_changes } = read(params)?;
-                let key = Key::of(&text_document.text_document_identifier.uri);
+                let changed: Changed = read(params)?;
+                let key = Key::of(&changed.text_document.text_document_identifier.uri);
                 let view = Arc::make_mut(&mut self.view);
                 let encoding = view.session.encoding;
-                view.documents.change(&key, text_document.version, content_changes, encoding);
+                view.documents.change(&key, changed, encoding);
                 self.changed_at(vec![key]);
             }
             Method::TextDocumentDidClose => {
@@ -286,15 +334,13 @@ impl Server {
         Ok(())
     }
 
-    fn cancel(&mut self, params: lsp::CancelParams) {
-        let id: RequestId = match params.id {
-            lsp::Id::Int(id) => id.into(),
-            lsp::Id::String(id) => id.into(),
-        };
+    fn cancel(&mut self, id: RequestId) {
         self.desk.drop_question(&id);
         if let Some(cancelled) = self.waiting.incoming.complete(&id) {
             cancelled.store(true, Ordering::Relaxed);
             self.count -= 1;
+            self.renders.forget(&id);
+            self.previews.wanted(&id);
             self.send(id, Err(Failure::cancelled()));
         }
     }
@@ -306,93 +352,51 @@ impl Server {
         }
     }
 
-    fn change_folders(&mut self, event: &lsp::WorkspaceFoldersChangeEvent) {
-        let paths = |folders: &[lsp::WorkspaceFolder]| -> Vec<PathBuf> {
-            folders.iter().filter_map(|folder| path_of(folder.uri.as_ref())).collect()
-        };
-        let (added, removed) = (paths(&event.added), paths(&event.removed));
-        let folders = &mut Arc::make_mut(&mut self.view).folders;
-        folders.retain(|folder| !removed.contains(folder) && !added.contains(folder));
-        folders.extend(added);
-        let all = self.view.documents.iter().map(|(key, _)| key.clone()).collect();
-        self.touch(all);
-    }
-
-    fn close(&mut self, key: &Key) {
-        Arc::make_mut(&mut self.view).documents.close(key);
-        self.reads.remove(key);
-        for told in self.board.close(key, &self.view) {
-            self.publish(told);
-        }
-        // Those that import it read what is saved from now on.
-        self.changed_at(vec![key.clone()]);
-    }
-
-    /// Open documents have other texts: they and those that are made of them mean something else.
-    fn changed_at(&mut self, keys: Vec<Key>) {
-        let stamp = self.view.documents.stamp();
-        self.changed.extend(keys.iter().map(|key| (key.clone(), stamp)));
-        let users = self.users(&keys);
-        let documents = &mut Arc::make_mut(&mut self.view).documents;
-        let users: Vec<Key> = users.into_iter().filter(|key| documents.touch(key)).collect();
-        let open = keys.into_iter().filter(|key| documents.get(key).is_some());
-        let looked: Vec<Key> = open.chain(users).collect();
-        self.desk.look(looked, &self.view);
-        self.previews.follow(&self.view);
-    }
-
-    /// Saved files have changed: only those mean something else that read them there.
-    fn saved_at(&mut self, keys: Vec<Key>) {
-        let stamp = self.view.documents.stamp() + 1;
-        let open = |key: &Key| self.view.documents.get(key).is_some();
-        let keys: Vec<Key> = keys.into_iter().filter(|key| !open(key)).collect();
-        self.changed.extend(keys.iter().map(|key| (key.clone(), stamp)));
-        let users = self.users(&keys);
-        self.touch(users);
-    }
-
-    /// The open documents that are made of some files, but not these.
-    fn users(&self, keys: &[Key]) -> Vec<Key> {
-        let uses = |(user, reads): &(&Key, &BTreeSet<Key>)| {
-            !keys.contains(user) && keys.iter().any(|key| reads.contains(key))
-        };
-        self.reads.iter().filter(uses).map(|(user, _)| user.clone()).collect()
-    }
-
-    /// Open documents mean something else.
-    fn touch(&mut self, keys: Vec<Key>) {
-        if keys.is_empty() {
-            return;
-        }
-        let documents = &mut Arc::make_mut(&mut self.view).documents;
-        let open: Vec<Key> = keys.into_iter().filter(|key| documents.touch(key)).collect();
-        self.desk.look(open, &self.view);
-    }
-
     fn hear(&mut self, told: Told) {
         match told {
-            Told::Answered(id, answer) => self.finish(id, answer),
-            Told::Changed => self.saved_at(self.reads.values().flatten().cloned().collect()),
+            Told::Answered(id, answer) => {
+                let answer = match self.previews.wanted(&id) {
+                    Some(order) => {
+                        answer.and_then(|_| guarded(|| self.preview(&order)).and_then(|answer| answer))
+                    }
+                    None => answer,
+                };
+                self.finish(id, answer);
+            }
+            Told::Changed => self.saved_at(self.reads.files().into_iter().cloned().collect()),
             Told::Notifies(method, params) => self.notify(method, params),
-            Told::Asks(method, params) => self.ask_client(method, params),
+            Told::Asks(ask) => self.ask_client(ask),
             Told::Looked { key, view, reads, found } => {
                 let seen = view.documents.get(&key).map(|document| document.stamp);
                 let now = self.view.documents.get(&key).map(|document| document.stamp);
                 if now.is_none() || seen != now {
                     return;
                 }
-                // What it reads may have changed while it was looked at, when nobody knew that it does.
-                let stamp = view.documents.stamp();
-                let late = |read: &Key| self.changed.get(read).is_some_and(|&changed| changed > stamp);
-                let again = reads.iter().any(late);
-                self.reads.insert(key.clone(), reads);
+                let is_late = self.reads.take(&key, reads, view.documents.stamp());
                 self.follow();
-                if again {
+                if is_late {
                     return self.touch(vec![key]);
+                }
+                // Once for all that one edit has changed.
+                if self.reads.settle(&key) {
+                    self.refresh();
                 }
                 for told in self.board.take(key, found, &self.view) {
                     self.publish(told);
                 }
+            }
+        }
+    }
+
+    /// Has the client ask again for what it shows in texts that it did not edit.
+    fn refresh(&mut self) {
+        let Client { refreshes_hints, refreshes_tokens, .. } = self.view.session.client;
+        for (can, method) in [
+            (refreshes_hints, lsp::LspRequestMethod::WorkspaceInlayHintRefresh),
+            (refreshes_tokens, lsp::LspRequestMethod::WorkspaceSemanticTokensRefresh),
+        ] {
+            if can {
+                self.ask_client(Ask::new(method, Value::Null));
             }
         }
     }
@@ -405,25 +409,12 @@ impl Server {
             self.watcher = Watcher::new(None, move || drop(tell.try_send(Told::Changed))).ok();
             return;
         }
-        let pattern = "**/*.{rt,csv,png,jpg,jpeg,webp,hdr,exr,pfm,ply,obj,stl}";
-        let watchers = vec![lsp::FileSystemWatcher {
-            glob_pattern: lsp::GlobPattern::Pattern(pattern.into()),
-            kind: None,
-        }];
-        let options = lsp::DidChangeWatchedFilesRegistrationOptions { watchers };
-        let registration = lsp::Registration {
-            id: "watched-files".into(),
-            method: Method::WorkspaceDidChangeWatchedFiles.as_str().into(),
-            register_options: serde_json::to_value(options).ok(),
-        };
-        let params = lsp::RegistrationParams { registrations: vec![registration] };
-        let method = lsp::LspRequestMethod::ClientRegisterCapability.as_str().to_string();
-        self.ask_client(method, params);
+        self.ask_client(Ask::new(lsp::LspRequestMethod::ClientRegisterCapability, json!(watched())));
     }
 
-    /// Asks the client something whose answer makes no difference.
-    fn ask_client(&mut self, method: String, params: impl serde::Serialize) {
-        let request = self.waiting.outgoing.register(method, params, ());
+    /// Asks the client something.
+    fn ask_client(&mut self, Ask { method, params, agreed }: Ask) {
+        let request = self.waiting.outgoing.register(method, params, agreed);
         let _ = self.connection.sender.send(request.into());
     }
 
@@ -431,8 +422,8 @@ impl Server {
     fn follow(&mut self) {
         let Some(watcher) = &mut self.watcher else { return };
         let saved = |key: &&Key| self.view.documents.get(key).is_none();
-        let files: BTreeSet<&Key> = self.reads.values().flatten().filter(saved).collect();
-        watcher.follow(files.into_iter().filter_map(Key::path).map(PathBuf::from));
+        let files = self.reads.files().into_iter().filter(saved);
+        watcher.follow(files.filter_map(Key::path).map(PathBuf::from));
     }
 
     fn publish(&self, params: lsp::PublishDiagnosticsParams) {
@@ -452,3 +443,6 @@ impl Server {
         let _ = self.connection.sender.send(response.into());
     }
 }
+
+#[cfg(test)]
+mod tests;

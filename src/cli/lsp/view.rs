@@ -48,12 +48,23 @@ impl View {
     /// The folder from which the path of a file is told, and whether what is in it may be read by each scene in it. Otherwise a
     /// scene reads below its own folder, as on the command line.
     pub fn base(&self, file: &Path) -> (PathBuf, bool) {
-        if let Some(root) = self.session.root.as_ref().filter(|root| file.starts_with(root)) {
-            return (root.clone(), true);
+        if let Some(root) = self.root_of(file) {
+            return (root, true);
         }
         let around = self.folders.iter().filter(|folder| file.starts_with(folder));
         let outermost = around.min_by_key(|folder| folder.as_os_str().len());
         let own = || file.parent().unwrap_or(Path::new("/")).to_path_buf();
         (outermost.cloned().unwrap_or_else(own), false)
+    }
+
+    /// The root that was given as the path of a file names it, which may lead there through a link; none where the file is not
+    /// below it.
+    pub fn root_of(&self, file: &Path) -> Option<PathBuf> {
+        let root = self.session.root.as_ref()?;
+        let is_root = |folder: &&Path| folder.canonicalize().is_ok_and(|real| real == *root);
+        match file.starts_with(root) {
+            true => Some(root.clone()),
+            false => file.ancestors().skip(1).find(is_root).map(Path::to_path_buf),
+        }
     }
 }

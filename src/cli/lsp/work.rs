@@ -10,7 +10,7 @@ use super::documents::{Document, Key};
 use super::requests::{Lane, Run};
 use super::view::View;
 use crossbeam_channel::Sender;
-use gen_lsp_types::Uri;
+use gen_lsp_types::{LspRequestMethod, Uri};
 use lsp_server::{ErrorCode, RequestId};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
@@ -74,8 +74,8 @@ pub enum Told {
     Changed,
     /// Something for the client, by method and parameters.
     Notifies(String, Value),
-    /// A question for the client, whose answer makes no difference.
-    Asks(String, Value),
+    /// A question for the client.
+    Asks(Ask),
     /// A document was looked at.
     Looked {
         /// Which.
@@ -87,6 +87,23 @@ pub enum Told {
         /// What is said of them.
         found: Found,
     },
+}
+
+/// A question for the client. What it answers makes no difference, but whether it agrees may.
+pub struct Ask {
+    /// The request.
+    pub method: String,
+    /// Its parameters.
+    pub params: Value,
+    /// Set by an answer that is no error.
+    pub agreed: Arc<AtomicBool>,
+}
+
+impl Ask {
+    /// One whose answer nobody waits for.
+    pub fn new(method: LspRequestMethod, params: Value) -> Ask {
+        Ask { method: method.as_str().into(), params, agreed: Arc::default() }
+    }
 }
 
 /// Where questions wait.
@@ -303,6 +320,11 @@ fn not_open(uri: &Uri) -> Failure {
 
 #[cfg(test)]
 mod tests {
+    use super::super::client::Client;
+    use super::super::document::Encoding;
+    use super::super::documents::Documents;
+    use super::super::pages::Pages;
+    use super::super::view::Session;
     use super::*;
 
     #[test]
@@ -311,5 +333,34 @@ mod tests {
         assert_eq!(failed.code, ErrorCode::InternalError as i32);
         assert!(failed.message.ends_with("at 7"), "{}", failed.message);
         assert_eq!(guarded(|| 4), Ok(4));
+    }
+
+    #[test]
+    fn behind_a_panic_the_next_question_is_answered() {
+        let (tell, told) = crossbeam_channel::bounded(8);
+        let desk = Desk::start(&tell).unwrap();
+        let session = Session {
+            client: Client::default(),
+            encoding: Encoding::Utf16,
+            root: None,
+            pages: Pages::default(),
+            memory: Arc::default(),
+        };
+        let view =
+            Arc::new(View { session: Arc::new(session), documents: Documents::default(), folders: vec![] });
+        let ask = |lane: Lane, id: i32, run: Run| {
+            let (params, cancelled) = (Value::Null, Arc::default());
+            desk.ask(lane, Question { id: id.into(), run, params, view: view.clone(), cancelled });
+        };
+        for lane in [Lane::Text, Lane::Meaning] {
+            ask(lane, 1, |_, _| panic!("oh"));
+            ask(lane, 2, |_, _| Ok(Value::Null));
+            let answers = [told.recv(), told.recv()].map(|told| match told {
+                Ok(Told::Answered(id, answer)) => (id, answer.map_err(|failure| failure.code)),
+                _ => panic!("no answer"),
+            });
+            let wrong: Result<Value, i32> = Err(ErrorCode::InternalError as i32);
+            assert_eq!(answers, [(RequestId::from(1), wrong), (RequestId::from(2), Ok(Value::Null))]);
+        }
     }
 }

@@ -3,7 +3,7 @@
 //! Paths are told from the folder of the workspace, so that one path means one file to all its scenes; what a scene may
 //! read lies below its own folder, as on the command line, unless a root was given.
 
-use super::documents::{Document, Key, MOST_TEXT};
+use super::documents::{Document, Kept, Key, MOST_TEXT};
 use super::view::View;
 use crate::cli::files::Disk;
 use rt_lang::files::{FileError, FilePath, Files, Memory};
@@ -118,8 +118,12 @@ impl Files for World {
         }
         self.asked.lock().unwrap_or_else(PoisonError::into_inner).insert(self.names.key(path));
         match (self.open.get(path), &self.disk) {
-            (Some(document), _) if document.text.whole().len() > most => Err(FileError::TooLarge(most)),
-            (Some(document), _) => Ok(document.text.whole().as_bytes().into()),
+            (Some(document), _) => match document.kept {
+                Kept::TooLong => Err(FileError::TooLarge(MOST_TEXT)),
+                Kept::Lost => Err(FileError::Unreadable("is open in an editor, and not known".into())),
+                Kept::Whole if document.text.whole().len() > most => Err(FileError::TooLarge(most)),
+                Kept::Whole => Ok(document.text.whole().as_bytes().into()),
+            },
             (None, Some(disk)) => disk.read(path, most),
             (None, None) => Err(FileError::Missing),
         }

@@ -171,8 +171,16 @@ pub(super) fn doc_of(typing: &Typing, place: Span) -> String {
 /// A thing of a kind with the fields that it needs, as it is written, with holes.
 pub(super) fn made(name: &str) -> String {
     let Some(id) = crate::schema::kind(name) else { return format!("{name} {{ ‹› }}") };
+    // What is usual, and fits each other: a camera does not look at itself.
+    let value = |field: &Field| match (id.get().name, field.name) {
+        ("camera", "from") => "(‹0›, ‹1›, ‹4›)m".into(),
+        ("lens", "focal") => "‹50›mm".into(),
+        ("lens", "stop") => "‹2.8›".into(),
+        ("render", "noise") => "‹1›%".into(),
+        _ => example(field),
+    };
     let fields: Vec<String> =
-        usual(id).iter().map(|field| format!("{}: {}", field.name, example(field))).collect();
+        usual(id).iter().map(|field| format!("{}: {}", field.name, value(field))).collect();
     if fields.is_empty() {
         format!("{name} {{ ‹› }}")
     } else {
@@ -202,7 +210,10 @@ pub(super) fn example(field: &Field) -> String {
         // A point or a direction is filled in by components.
         Preset::Value("0") if matches!(field.ty, FieldType::Tuple(..)) => example_of(field.ty),
         Preset::Value(value) => format!("‹{value}›"),
-        Preset::Required | Preset::Absent(_) => example_of(field.ty),
+        Preset::Required | Preset::Absent(_) => match field.ty {
+            FieldType::Tuple(count, dim) if field.range.low >= 0.0 => tuple(&["‹1›"; 3][..count.min(3)], dim),
+            ty => example_of(ty),
+        },
     }
 }
 
@@ -217,10 +228,7 @@ pub(super) fn example_of(ty: FieldType) -> String {
         FieldType::Bool => "‹true›".into(),
         FieldType::Color | FieldType::Paint => "‹#cccccc›".into(),
         FieldType::Text => "\"‹›\"".into(),
-        FieldType::Tuple(count, dim) => {
-            let holes: Vec<&str> = ["‹0›", "‹1›", "‹0›"].into_iter().take(count).collect();
-            format!("({}){}", holes.join(", "), dim.example_unit())
-        }
+        FieldType::Tuple(count, dim) => tuple(&["‹0›", "‹1›", "‹0›"][..count.min(3)], dim),
         FieldType::IntTuple(_) => "(‹1280›, ‹720›)".into(),
         FieldType::Transform => "‹turn(y: 45deg)›".into(),
         FieldType::Made(Category::Material) => "‹diffuse { color: #cccccc }›".into(),
@@ -228,6 +236,10 @@ pub(super) fn example_of(ty: FieldType) -> String {
         FieldType::OneOf([first, ..]) => example_of(*first),
         _ => "‹›".into(),
     }
+}
+
+fn tuple(holes: &[&str], dim: units::Dim) -> String {
+    format!("({}){}", holes.join(", "), dim.example_unit())
 }
 
 /// Text in which nothing looks like a hole.

@@ -78,9 +78,12 @@ impl List<'_> {
 
     /// The names that are in scope: those of the type that is wanted first.
     fn names(&mut self, typing: &Typing, wanted: Option<&Declared>) {
+        let own = typing.cursor.declares();
         for (name, place, ty) in typing.visible() {
             let rank = match (wanted, ty) {
                 (_, Type::Part(_)) => continue,
+                // Nothing is made of itself.
+                _ if place.source == typing.analysis.main && own == Some(place.range().start) => continue,
                 (None, Type::File(_)) => Rank::Rather,
                 (Some(wanted), ty) if wanted.accepts(ty) && *ty != Type::Invalid => Rank::Fits,
                 (Some(wanted), ty) if leads_to(ty, wanted) => Rank::Rather,

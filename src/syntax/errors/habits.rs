@@ -5,6 +5,7 @@ use super::{shown, unexpected};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::span::Span;
 use crate::syntax::ast::Name;
+use crate::units;
 
 /// What begins a statement elsewhere, and how that is written here.
 const WORDS: &[(&[&str], &str)] = &[
@@ -224,24 +225,10 @@ pub(in crate::syntax) fn power_of_unit(
 
 /// `1 meter`: a unit is not written out. `place` is from behind the number.
 pub(in crate::syntax) fn long_unit(word: &str, span: Span, place: Span) -> Option<Diagnostic> {
-    const LONG: &[(&str, &[&str])] = &[
-        ("m", &["meter", "meters", "metre", "metres"]),
-        ("cm", &["centimeter", "centimeters", "centimetre", "centimetres"]),
-        ("mm", &["millimeter", "millimeters", "millimetre", "millimetres"]),
-        ("km", &["kilometer", "kilometers", "kilometre", "kilometres"]),
-        ("in", &["inch", "inches"]),
-        ("ft", &["foot", "feet"]),
-        ("deg", &["degree", "degrees"]),
-        ("rad", &["radian", "radians"]),
-        ("turn", &["turns"]),
-        ("W", &["watt", "watts", "Watt", "Watts"]),
-        ("K", &["kelvin", "kelvins", "Kelvin"]),
-        ("%", &["percent"]),
-    ];
-    let (unit, _) = LONG.iter().find(|(_, words)| words.contains(&word))?;
+    let unit = units::spelt_out(word)?;
     let diagnostic =
         Diagnostic::new(Code::E0101, format!("unknown unit `{word}`"), span).at("not known here");
-    Some(diagnostic.help(format!("write `{unit}`, which touches its number: `1{unit}`")).fix(place, *unit))
+    Some(diagnostic.help(format!("write `{unit}`, which touches its number: `1{unit}`")).fix(place, unit))
 }
 
 /// `[for i in list { … }]`, `[2 * i for i in list]`

@@ -91,6 +91,178 @@ fn names_are_changed_in_all_files_open_or_not() {
 }
 
 #[test]
+fn open_documents_are_renamed_together_wherever_they_lie() {
+    let desk = Desk::new();
+    let woods = "material oak = diffuse { color: #705848 }\n";
+    let params = |client: &Client, name: &str, line: u32, character: u32| {
+        let at = json!({ "line": line, "character": character });
+        let more = json!({ "position": at, "newName": "elm", "context": { "includeDeclaration": true } });
+        about(client, name, more)
+    };
+    let both = [("scene.rt", 1, Some(1)), ("woods.rt", 1, Some(1))].map(|(a, b, c)| (a.to_string(), b, c));
+    std::fs::create_dir(desk.path("lib")).unwrap();
+    // No folder of a workspace says where they lie together, or only the one of those that are imported.
+    for folders in
+        [json!([]), json!([{ "uri": format!("file://{}", desk.path("lib").display()), "name": "lib" }])]
+    {
+        let edits_with = json!({ "workspace": { "workspaceEdit": { "documentChanges": true } } });
+        let mut client =
+            Client::silent(&desk).agreed(json!({ "capabilities": edits_with, "workspaceFolders": folders }));
+        client.open("lib/woods.rt", woods);
+        client.open("scene.rt", "import \"lib/woods.rt\" as w\nsphere { radius: 1m, material: w.oak }\n");
+        for (name, line, character) in [("lib/woods.rt", 0, 10), ("scene.rt", 1, 34)] {
+            let renamed = client.ask("textDocument/rename", params(&client, name, line, character)).unwrap();
+            assert_eq!(edits(&renamed), both, "{name}");
+            let found =
+                client.ask("textDocument/references", params(&client, name, line, character)).unwrap();
+            assert_eq!(found.as_array().unwrap().len(), 2, "{name}");
+        }
+        assert_eq!(client.end(), Some(0));
+    }
+}
+
+#[test]
+fn names_are_changed_in_folders_that_are_otherwise_left_out() {
+    for (folder, arguments) in [("target", "lsp"), (".drafts", "lsp"), ("target", "lsp --root .")] {
+        let desk = Desk::new();
+        std::fs::create_dir(desk.path(folder)).unwrap();
+        let woods = "material oak = diffuse { color: #705848 }\n";
+        desk.put(&format!("{folder}/woods.rt"), woods);
+        desk.put(
+            &format!("{folder}/scene.rt"),
+            "import \"woods.rt\" as w\nsphere { radius: 1m, material: w.oak }\n",
+        );
+        let client = Client::started(&desk, arguments);
+        let edits_with = json!({ "workspace": { "workspaceEdit": { "documentChanges": true } } });
+        let root = json!([{ "uri": client.uri(""), "name": "desk" }]);
+        let mut client = client.agreed(json!({ "capabilities": edits_with, "workspaceFolders": root }));
+        let name = format!("{folder}/woods.rt");
+        client.open(&name, woods);
+        let more = json!({ "position": { "line": 0, "character": 10 }, "newName": "elm" });
+        let renamed = client.ask("textDocument/rename", about(&client, &name, more)).unwrap();
+        let both = [("scene.rt", 1, None), ("woods.rt", 1, Some(1))].map(|(a, b, c)| (a.to_string(), b, c));
+        assert_eq!(edits(&renamed), both, "{folder} {arguments}");
+        assert_eq!(client.end(), Some(0));
+    }
+}
+
+#[test]
+fn a_workspace_too_deep_to_look_through_is_no_reason_to_rename_a_part() {
+    let desk = Desk::new();
+    let deep: String = (0..14).map(|_| "in/").collect();
+    std::fs::create_dir_all(desk.path(&deep)).unwrap();
+    let woods = "material oak = diffuse { color: #705848 }\n";
+    desk.put("woods.rt", woods);
+    let mut client = Client::started(&desk, "lsp --root .").agreed(json!({ "capabilities": {} }));
+    client.open("woods.rt", woods);
+    let more = json!({ "position": { "line": 0, "character": 10 }, "newName": "elm" });
+    let refused = client.ask("textDocument/rename", about(&client, "woods.rt", more)).unwrap_err();
+    assert_eq!(refused["message"], "the workspace has too many files to find all uses");
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn symbols_of_scenes_that_take_long_are_soon_there() {
+    let desk = Desk::new();
+    for index in 0..200 {
+        let scene = format!(
+            "let oak{index} = 1m\nfor i in range(300000) {{ sphere {{ at: (sin(i * 1deg), i, 0)m, radius: 1m }} }}\n"
+        );
+        desk.put(&format!("many{index}.rt"), scene);
+    }
+    let mut client = Client::new(&desk);
+    let symbols = client.ask("workspace/symbol", json!({ "query": "oak" })).unwrap();
+    assert_eq!(symbols.as_array().unwrap().len(), 200);
+    let first = symbols.as_array().unwrap().iter().find(|symbol| symbol["name"] == "oak0").unwrap();
+    assert_eq!(first["location"]["uri"], client.uri("many0.rt"));
+    assert_eq!(first["location"]["range"]["start"], json!({ "line": 0, "character": 4 }));
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn who_takes_no_snippets_is_given_no_names_that_are_not_there() {
+    let desk = Desk::new();
+    let completion = json!({ "completion": { "completionItem": { "documentationFormat": ["plaintext"] } } });
+    let mut client = Client::with(&desk, json!({ "textDocument": completion }));
+    client.open("a.rt", "sphere { radius: cla }\nsph\n");
+    for (line, character, label, text) in [(0, 20, "clamp", "clamp("), (1, 3, "sphere", "sphere")] {
+        let offered = client.at("textDocument/completion", "a.rt", line, character).unwrap();
+        let one = offered.as_array().unwrap().iter().find(|item| item["label"] == label).unwrap();
+        assert_eq!(one["textEdit"]["newText"], text);
+        assert_eq!(
+            (&one["insertTextFormat"], &one["documentation"]["kind"]),
+            (&json!(1), &json!("plaintext"))
+        );
+    }
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn folds_of_whole_lines_hide_nothing_that_goes_on() {
+    let desk = Desk::new();
+    let lines = json!({ "foldingRange": { "lineFoldingOnly": true } });
+    let mut client = Client::with(&desk, json!({ "textDocument": lines }));
+    client.open("a.rt", "if 1 < 2 {\n  sphere { radius: 1m }\n} else {\n  sphere { radius: 2m }\n}\n");
+    let folds = client.ask("textDocument/foldingRange", about(&client, "a.rt", json!({}))).unwrap();
+    assert_eq!(folds, json!([{ "startLine": 0, "endLine": 1 }, { "startLine": 2, "endLine": 4 }]));
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn a_param_of_a_part_is_renamed_where_it_is_set_and_a_name_that_is_taken_is_refused() {
+    let desk = Desk::new();
+    desk.put(
+        "woods.rt",
+        "part stool {\n  param seat: length = 45cm\n  param wide: length = 30cm\n  sphere { radius: seat - wide }\n}\n",
+    );
+    let mut client = Client::new(&desk);
+    client.open("scene.rt", "import \"woods.rt\" as woods\nwoods.stool { seat: 40cm }\n");
+    let rename = |client: &mut Client, name: &str| {
+        let more = json!({ "position": { "line": 1, "character": 15 }, "newName": name });
+        let params = about(client, "scene.rt", more);
+        client.ask("textDocument/rename", params)
+    };
+    let renamed = rename(&mut client, "tall").unwrap();
+    let expected = [("scene.rt", 1, Some(1)), ("woods.rt", 2, None)].map(|(a, b, c)| (a.to_string(), b, c));
+    assert_eq!(edits(&renamed), expected);
+    let refused = rename(&mut client, "wide").unwrap_err();
+    assert_eq!(refused["code"], -32803);
+    let said = refused["message"].as_str().unwrap();
+    assert!(said.contains("`wide` is declared at") && said.ends_with("line 3"), "{said}");
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn what_follows_from_a_scene_stands_beside_it() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    let scene = "let r = 2 * 15cm\nsphere { radius: r }\n\
+                 camera { from: (0, 1, 4)m, look: (0, 0, 0)m, lens { focal: 50mm, stop: 2, focus: 4m } }\n";
+    client.open("a.rt", scene);
+    let whole = json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 3, "character": 0 } });
+    let params = about(&client, "a.rt", json!({ "range": whole }));
+    let hints = client.ask("textDocument/inlayHint", params).unwrap();
+    let said: Vec<(u64, &str)> = hints
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|hint| (hint["position"]["line"].as_u64().unwrap(), hint["label"].as_str().unwrap()))
+        .collect();
+    assert!(said.iter().any(|(line, text)| *line == 0 && text.contains("30cm")), "{said:?}");
+    // 2 atan(36mm / (2 · 50mm)).
+    assert!(said.iter().any(|(line, text)| *line == 2 && text.contains("39.6deg")), "{said:?}");
+    let link = "sky { image: \"dawn.png\" }\nimport \"woods.rt\" as woods\n";
+    desk.put("woods.rt", "material oak = diffuse {}\n");
+    client.replace("a.rt", 2, link);
+    let params = about(&client, "a.rt", json!({}));
+    let links = client.ask("textDocument/documentLink", params).unwrap();
+    let targets: Vec<&str> =
+        links.as_array().unwrap().iter().map(|link| link["target"].as_str().unwrap()).collect();
+    assert!(targets.contains(&&*client.uri("woods.rt")), "{targets:?}");
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
 fn slips_have_mends_and_warnings_can_be_allowed() {
     let desk = Desk::new();
     let mut client = Client::new(&desk);
@@ -166,6 +338,19 @@ fn the_text_is_told_in_its_parts() {
     let commands: Vec<&str> =
         lenses.as_array().unwrap().iter().map(|lens| lens["command"]["command"].as_str().unwrap()).collect();
     assert_eq!(commands, ["rtc.startPreview", "rtc.render"]);
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn what_is_selected_is_laid_out_alone() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    client.open("a.rt", "sphere{radius:1m}\nbox{size:(1,2,3)m}\nlet  q=1\n");
+    let line = |line: u32, end: u32| json!({ "start": { "line": line, "character": 0 }, "end": { "line": end, "character": 0 } });
+    let options = json!({ "tabSize": 2, "insertSpaces": true });
+    let params = about(&client, "a.rt", json!({ "range": line(1, 2), "options": options }));
+    let edits = client.ask("textDocument/rangeFormatting", params).unwrap();
+    assert_eq!(edits, json!([{ "range": line(1, 2), "newText": "box { size: (1, 2, 3)m }\n" }]));
     assert_eq!(client.end(), Some(0));
 }
 

@@ -19,13 +19,20 @@ pub struct Client<'d> {
     /// What came that nobody has looked at.
     kept: Vec<Value>,
     next: i32,
+    /// Whether it takes tokens of progress at once.
+    pub agrees: bool,
 }
 
 impl<'d> Client<'d> {
     /// Starts the server, and says nothing yet.
     pub fn silent(desk: &'d Desk) -> Client<'d> {
+        Client::started(desk, "lsp")
+    }
+
+    /// Starts it with arguments.
+    pub fn started(desk: &'d Desk, arguments: &str) -> Client<'d> {
         let mut child = desk
-            .command("lsp")
+            .command(arguments)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::inherit())
@@ -41,17 +48,21 @@ impl<'d> Client<'d> {
             }
         });
         let input = child.stdin.take();
-        Client { desk, child, input, messages, kept: vec![], next: 1 }
+        Client { desk, child, input, messages, kept: vec![], next: 1, agrees: true }
     }
 
     /// Starts it, and agrees on what both can do.
     pub fn with(desk: &'d Desk, capabilities: Value) -> Client<'d> {
-        let mut client = Client::silent(desk);
+        let client = Client::silent(desk);
         let folder = json!({ "uri": client.uri(""), "name": "desk" });
-        let params = json!({ "processId": null, "rootUri": null, "capabilities": capabilities, "workspaceFolders": [folder] });
-        client.ask("initialize", params).unwrap();
-        client.tell("initialized", json!({}));
-        client
+        client.agreed(json!({ "capabilities": capabilities, "workspaceFolders": [folder] }))
+    }
+
+    /// Agrees on what both can do, and where.
+    pub fn agreed(mut self, params: Value) -> Client<'d> {
+        self.ask("initialize", params).unwrap();
+        self.tell("initialized", json!({}));
+        self
     }
 
     /// One that can do what most can.
@@ -124,7 +135,7 @@ impl<'d> Client<'d> {
                 return self.kept.remove(at);
             }
             match self.messages.recv_timeout(PATIENCE.saturating_sub(start.elapsed())) {
-                Ok(message) => self.kept.push(message),
+                Ok(message) => self.keep(message),
                 Err(error) => panic!("no {what} comes ({error}), but: {:#?}", self.kept),
             }
         }
@@ -185,6 +196,33 @@ impl<'d> Client<'d> {
         self.code()
     }
 
+    /// Has the system end it.
+    #[cfg(unix)]
+    pub fn terminate(&mut self) {
+        let pid = self.child.id().to_string();
+        assert!(std::process::Command::new("kill").args(["-TERM", &pid]).status().unwrap().success());
+    }
+
+    /// What of what has come is so.
+    pub fn has(&mut self, wanted: impl Fn(&Value) -> bool) -> bool {
+        while let Ok(message) = self.messages.try_recv() {
+            self.keep(message);
+        }
+        self.kept.iter().any(wanted)
+    }
+
+    fn keep(&mut self, message: Value) {
+        if self.agrees && message["method"] == "window/workDoneProgress/create" {
+            self.agree(&message);
+        }
+        self.kept.push(message);
+    }
+
+    /// Answers a request of the server with nothing.
+    pub fn agree(&mut self, request: &Value) {
+        self.send(&json!({ "jsonrpc": "2.0", "id": request["id"], "result": null }));
+    }
+
     /// Sends nothing any more.
     pub fn hang_up(&mut self) {
         self.input = None;
@@ -205,9 +243,21 @@ impl<'d> Client<'d> {
     /// The most memory it has held so far, in bytes.
     #[cfg(target_os = "linux")]
     pub fn memory(&self) -> u64 {
+        1024 * self.status("VmHWM")
+    }
+
+    /// How many threads it has.
+    #[cfg(target_os = "linux")]
+    pub fn threads(&self) -> u64 {
+        self.status("Threads")
+    }
+
+    /// What the system tells of it.
+    #[cfg(target_os = "linux")]
+    fn status(&self, name: &str) -> u64 {
         let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).unwrap();
-        let line = status.lines().find(|line| line.starts_with("VmHWM")).unwrap();
-        1024 * line.split_whitespace().nth(1).unwrap().parse::<u64>().unwrap()
+        let line = status.lines().find(|line| line.starts_with(name)).unwrap();
+        line.split_whitespace().nth(1).unwrap().parse().unwrap()
     }
 }
 

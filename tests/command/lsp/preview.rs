@@ -143,6 +143,60 @@ fn the_preview_shows_what_is_not_saved_and_leads_both_ways() {
 }
 
 #[test]
+fn a_camera_that_there_is_not_is_refused() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    let shot = |name: &str| format!("camera {name} {{ from: (0, 1, 6)m, look: (0, 0, 0)m }}\n");
+    client.open("scene.rt", &(scene(24) + &shot("wide") + &shot("close")));
+    let start = |client: &mut Client, camera: &str| {
+        let arguments = json!([{ "uri": client.uri("scene.rt"), "camera": camera }]);
+        client
+            .ask("workspace/executeCommand", json!({ "command": "rtc.startPreview", "arguments": arguments }))
+    };
+    let message = |refused: Result<Value, Value>| refused.unwrap_err()["message"].clone();
+    assert_eq!(message(start(&mut client, "clse")), "no camera is called `clse`: there are `wide`, `close`");
+    client.replace("scene.rt", 2, &(scene(24) + &shot("wide")));
+    assert_eq!(message(start(&mut client, "close")), "no camera is called `close`: there is `wide`");
+    client.replace("scene.rt", 3, &(scene(24) + &shot("")));
+    assert_eq!(message(start(&mut client, "wide")), "no camera is called `wide`: none has a name");
+    assert_eq!(client.end(), Some(0));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_preview_ends_with_its_document() {
+    let desk = Desk::new();
+    let shows = json!({ "window": { "showDocument": { "support": true } } });
+    let mut client = Client::with(&desk, shows);
+    client.open("scene.rt", &scene(24));
+    assert_eq!(client.codes("scene.rt", Some(1)), Vec::<String>::new());
+    let before = client.threads();
+    // More than are served at once.
+    for round in 0..20 {
+        let url = start(&mut client, "scene.rt");
+        if round == 0 {
+            until_wide(&url, 24);
+            let mut page = Page::new(&url);
+            page.wait(|message| message["type"] == "status");
+        }
+        assert!(client.threads() > before);
+        let document = json!({ "uri": client.uri("scene.rt") });
+        client.tell("textDocument/didClose", json!({ "textDocument": document }));
+        client.open("scene.rt", &scene(24));
+    }
+    let document = json!({ "uri": client.uri("scene.rt") });
+    client.tell("textDocument/didClose", json!({ "textDocument": document }));
+    // Those that all share may have come meanwhile.
+    let most = before + std::thread::available_parallelism().unwrap().get() as u64;
+    let begin = Instant::now();
+    while client.threads() > most {
+        assert!(begin.elapsed() < PATIENCE, "{} threads, {before} before", client.threads());
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
 fn what_has_no_place_has_no_preview() {
     let desk = Desk::new();
     let mut client = Client::new(&desk);

@@ -63,6 +63,12 @@ camera { from: (0, 1, 4)m, look: ball }
       (while (not (eobp)) (delete-horizontal-space) (forward-line))
       (indent-region (point-min) (point-max))
       (check (equal (buffer-string) written) (format "garden.rt is indented otherwise:\n%s" (buffer-string))))))
+(with-temp-buffer
+  (let ((noted "sphere {\n  /* a\n     b */\n  radius: 1m // /* c\n}\nlet a = 4\n  / 2\n  * 3\n/*\n * d\n    */\nplane {\n}\n"))
+    (insert noted)
+    (rt-mode)
+    (indent-region (point-min) (point-max))
+    (check (equal (buffer-string) noted) (format "comments are indented otherwise:\n%s" (buffer-string)))))
 (tell "what is laid out is indented so")
 
 (apply #'eglot--connect (eglot--guess-contact))

@@ -11,7 +11,10 @@ param size: length = 50cm in 10cm to 1m
 material paint = diffuse { color: #d94f30 }
 sphere ball { at: (0, size, 0), radius: size, material: paint }
 plane {}
-light { at: (2, 3, 2)m, power: 60W }
+light {
+  at: (2, 3, 2)m
+  power: 60W
+}
 camera { from: (0, 1, 4)m, look: ball }
 ]]
 
@@ -93,6 +96,14 @@ step('what is laid out is indented so', function()
   open('garden-copy.rt', garden)
   vim.cmd('silent %left | silent normal! gg=G')
   check(text() == garden, 'garden.rt is indented otherwise:\n' .. vim.diff(garden, text()))
+  vim.cmd('bwipeout!')
+end)
+
+step('what a comment holds stays where it is', function()
+  local noted = 'sphere {\n  /* a\n     b */\n  radius: 1m // /* c\n}\nlet a = 4\n  / 2\n/*\n * d\n    */\nplane {\n}\n'
+  open('noted.rt', noted)
+  vim.cmd('silent normal! gg=G')
+  check(text() == noted, 'the comments are indented otherwise:\n' .. vim.diff(noted, text()))
   vim.cmd('bwipeout!')
 end)
 
@@ -204,10 +215,11 @@ step('symbols, tokens, colours, folds and hints are there', function()
   check(#request('textDocument/documentSymbol', document) >= 5, 'the things of the file are listed')
   check(#request('textDocument/semanticTokens/full', document).data > 50, 'words have their kinds')
   check(#request('textDocument/documentColor', document) == 1, 'the colour is seen')
-  check(#request('textDocument/foldingRange', document) >= 0, 'folds are answered')
+  check(#request('textDocument/foldingRange', document) >= 1, 'something can be folded')
   check(#request('textDocument/codeLens', document) >= 1, 'something is offered above the camera')
   local all = { start = { line = 0, character = 0 }, ['end'] = { line = 9, character = 0 } }
-  request('textDocument/inlayHint', vim.tbl_extend('error', document, { range = all }))
+  local hints = request('textDocument/inlayHint', vim.tbl_extend('error', document, { range = all }))
+  check(#hints >= 1 and hints[1].label:find('50, 0)cm', 1, true), 'what the centre comes to is said')
 end)
 
 step('the live preview serves the text, saved or not', function()
@@ -228,7 +240,7 @@ step('the live preview serves the text, saved or not', function()
   vim.lsp.codelens.refresh({ bufnr = 0 })
   wait('something stands above the camera', function()
     return vim.iter(vim.lsp.codelens.get(0)):any(function(lens)
-      return lens.range.start.line == 6
+      return lens.range.start.line == 9
     end)
   end)
   vim.ui.select = function(offered, about, choose)

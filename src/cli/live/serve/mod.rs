@@ -57,7 +57,7 @@ struct Shared {
     saving: Semaphore,
 }
 
-/// Serves the page from a thread of its own until the process ends. Gives its address, secret included.
+/// Serves the page from a thread of its own until the hub ends. Gives its address, secret included.
 pub fn start(hub: Arc<Hub>, wanted: Wanted) -> Result<String, Problem> {
     let listener = listen(wanted.address)?;
     let address = listener.local_addr().map_err(|error| refused(wanted.address, &error))?;
@@ -65,7 +65,7 @@ pub fn start(hub: Arc<Hub>, wanted: Wanted) -> Result<String, Problem> {
         .map_err(|error| Problem::new(format!("the system gives no random numbers: {error}")))?;
     let url = format!("http://{address}/{token}/");
     let shared = Arc::new(Shared {
-        hub,
+        hub: hub.clone(),
         guard: Guard::new(address, token),
         editor: wanted.editor,
         seats: Arc::new(Semaphore::new(MOST_PAGES)),
@@ -82,8 +82,12 @@ pub fn start(hub: Arc<Hub>, wanted: Wanted) -> Result<String, Problem> {
                 let _ = stream.set_nodelay(true);
             });
             let router = Router::new().fallback(answer).with_state(shared);
-            let _ = axum::serve(listener, router).await;
+            tokio::select! {
+                _ = axum::serve(listener, router).into_future() => {}
+                () = hub.ended() => {}
+            }
         });
+        // With the runtime every talk with a page ends.
     };
     std::thread::Builder::new()
         .name("preview".into())

@@ -69,7 +69,7 @@ fn fix_all(key: &Key, meaning: &Meaning, asked: &Asked) -> Option<lsp::CodeActio
     let mended = mend(&analysis.source().text, analysis.main, &analysis.diagnostics)?;
     let edits = between(meaning.text(analysis.main), &mended.text, asked.view.session.encoding);
     Some(lsp::CodeAction {
-        title: "mend all that can be mended without a thought".into(),
+        title: "Mend all that can be mended without a thought".into(),
         kind: Some(Kind::SourceFixAll),
         edit: Some(edits::workspace(BTreeMap::from([(key.clone(), edits)]), asked.view)),
         ..lsp::CodeAction::default()

@@ -1,6 +1,7 @@
 //! What can stand where somebody types.
 
 use super::super::analyst::range;
+use super::super::client::Client;
 use super::super::documents::{Key, place};
 use super::super::work::{Answer, Asked};
 use super::super::world::World;
@@ -23,19 +24,21 @@ pub fn complete(asked: &mut Asked, params: lsp::CompletionParams) -> Answer<Opti
     }
     let item = |(index, completion): (usize, Completion)| {
         let range = range(&document.text, completion.replace.clone(), session.encoding);
-        item(completion, index, range, session.client.snippets)
+        item(completion, index, range, &session.client)
     };
     let items = found.into_iter().enumerate().map(item).collect();
     Ok(Some(lsp::CompletionResponse::CompletionItemList(items)))
 }
 
-fn item(completion: Completion, index: usize, range: lsp::Range, snippets: bool) -> lsp::CompletionItem {
+fn item(completion: Completion, index: usize, range: lsp::Range, client: &Client) -> lsp::CompletionItem {
     let Completion { label, kind, insert, detail, doc, .. } = completion;
-    let snippet = snippets && !insert.holes.is_empty();
-    let new_text = if snippet { snippet_of(&insert) } else { insert.text };
-    let markup = |value| {
-        lsp::Documentation::MarkupContent(lsp::MarkupContent { kind: lsp::MarkupKind::Markdown, value })
+    let snippet = client.snippets && !insert.holes.is_empty();
+    let new_text = if snippet { snippet_of(&insert) } else { bare(&insert).into() };
+    let words = match client.markdown_docs {
+        true => lsp::MarkupKind::Markdown,
+        false => lsp::MarkupKind::PlainText,
     };
+    let markup = |value| lsp::Documentation::MarkupContent(lsp::MarkupContent { kind: words.clone(), value });
     lsp::CompletionItem {
         kind: Some(kind_of(kind)),
         detail: Some(detail).filter(|detail| !detail.is_empty()),
@@ -51,6 +54,14 @@ fn item(completion: Completion, index: usize, range: lsp::Range, snippets: bool)
         label,
         ..lsp::CompletionItem::default()
     }
+}
+
+/// A text up to what is to be filled in, or to the body that holds it: what stands there as an example would otherwise be
+/// meant.
+fn bare(insert: &Insert) -> &str {
+    let Some(hole) = insert.holes.first() else { return &insert.text };
+    let start = &insert.text[..hole.start];
+    start.find(" {").map_or(start, |body| &start[..body])
 }
 
 /// A text with its places to be filled in, as clients write it.
@@ -101,5 +112,8 @@ mod tests {
         let holes = std::iter::once(17..19).collect();
         let insert = Insert { holes, text };
         assert_eq!(snippet_of(&insert), "sphere { radius: ${1:1m} \\} \\$\\\\");
+        assert_eq!(bare(&insert), "sphere");
+        let call = Insert { text: "cos(angle)".into(), holes: std::iter::once(4..9).collect() };
+        assert_eq!(bare(&call), "cos(");
     }
 }

@@ -1,5 +1,6 @@
 //! Laying out.
 
+use super::super::documents::Kept;
 use super::super::edits::between;
 use super::super::work::{Answer, Asked, Failure};
 use gen_lsp_types as lsp;
@@ -9,8 +10,8 @@ use rt_lang::syntax;
 /// The edits that lay out a document as `rtc fmt` does.
 pub fn whole(asked: &mut Asked, params: lsp::DocumentFormattingParams) -> Answer<Option<Vec<lsp::TextEdit>>> {
     let document = asked.document(&params.text_document.uri)?;
-    if document.is_too_long {
-        return Err(Failure::plain("the document is too long"));
+    if document.kept != Kept::Whole {
+        return Err(Failure::plain("the text of the document is not known: close it and open it again"));
     }
     let (formatted, _) = syntax::format(SourceId(0), document.text.whole());
     if let Some(failure) = asked.spoilt(&document) {

@@ -6,7 +6,8 @@ use rt_lang::ide::Hint;
 
 /// The remarks of a part of a document.
 pub fn hints(asked: &mut Asked, params: lsp::InlayHintParams) -> Answer<Option<Vec<lsp::InlayHint>>> {
-    let meaning = asked.meaning(&params.text_document.uri)?;
+    let uri = &params.text_document.uri;
+    let (document, meaning) = (asked.document(uri)?, asked.meaning(uri)?);
     let hint = |hint: Hint| lsp::InlayHint {
         position: meaning.position(hint.at),
         label: lsp::Label::String(hint.text),
@@ -17,6 +18,7 @@ pub fn hints(asked: &mut Asked, params: lsp::InlayHintParams) -> Answer<Option<V
         padding_right: None,
         data: None,
     };
-    let found = meaning.analysis.hints(meaning.bytes(params.range));
-    Ok(Some(found.into_iter().map(hint).collect()))
+    let stop = || asked.spoilt(&document).is_some();
+    let found = meaning.analysis.hints(meaning.bytes(params.range), &stop);
+    asked.spoilt(&document).map_or_else(|| Ok(Some(found.into_iter().map(hint).collect())), Err)
 }

@@ -2,7 +2,7 @@
 
 use crate::cli::lsp::work::{Answer, Asked};
 use gen_lsp_types as lsp;
-use rt_lang::ide::Hover;
+use rt_lang::ide::{self, Hover};
 use std::fmt::Write;
 
 /// What is said of a place.
@@ -29,7 +29,7 @@ fn markdown(hover: &Hover, pictures: bool) -> String {
         let _ = write!(text, "\n= `{value}`\n");
     }
     if let Some(colour) = hover.colour {
-        let hex = hex(colour);
+        let hex = ide::hex(colour);
         let _ = match pictures {
             true => write!(text, "\n![{hex}]({}) `{hex}`\n", square(&hex)),
             false => write!(text, "\n■ `{hex}`\n"),
@@ -47,12 +47,6 @@ fn plain(hover: &Hover) -> String {
     format!("{}{value}{doc}", hover.code)
 }
 
-/// A colour as the language writes it, display-referred.
-pub fn hex(colour: [f64; 3]) -> String {
-    let [r, g, b] = colour.map(|x| (x.clamp(0.0, 1.0) * 255.0).round() as u8);
-    format!("#{r:02x}{g:02x}{b:02x}")
-}
-
 /// The address of a picture of a colour, which holds the picture.
 fn square(hex: &str) -> String {
     let fill = hex.replace('#', "%23");
@@ -60,15 +54,4 @@ fn square(hex: &str) -> String {
         "data:image/svg+xml;utf8,%3Csvg%20xmlns=%22http://www.w3.org/2000/svg%22%20width=%2216%22%20height=%2216%22%3E\
          %3Crect%20width=%2216%22%20height=%2216%22%20fill=%22{fill}%22/%3E%3C/svg%3E"
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn colours_are_written_as_the_language_has_them() {
-        assert_eq!(hex([0.0, 0.5, 1.0]), "#0080ff");
-        assert_eq!(hex([-1.0, 2.0, f64::NAN]), "#00ff00");
-    }
 }

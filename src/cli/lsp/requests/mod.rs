@@ -71,7 +71,7 @@ pub fn find(method: &str) -> Option<(Lane, Run)> {
             (Meaning, |asked, params| run::<lsp::DocumentSymbolRequest>(asked, params, symbols::document))
         }
         Method::WorkspaceSymbol => {
-            (Meaning, |asked, params| run::<lsp::WorkspaceSymbolRequest>(asked, params, symbols::workspace))
+            (Text, |asked, params| run::<lsp::WorkspaceSymbolRequest>(asked, params, symbols::workspace))
         }
         Method::TextDocumentFoldingRange => {
             (Meaning, |asked, params| run::<lsp::FoldingRangeRequest>(asked, params, folds::folds))

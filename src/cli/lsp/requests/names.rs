@@ -6,7 +6,7 @@ use super::super::edits;
 use super::super::work::{Answer, Asked, Failure};
 use super::workspace::users;
 use gen_lsp_types as lsp;
-use rt_lang::ide::{self, Analysis};
+use rt_lang::ide;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -33,11 +33,11 @@ pub fn definition(
 /// Every use of what is named at a place.
 pub fn references(asked: &mut Asked, params: lsp::ReferenceParams) -> Answer<Option<Vec<lsp::Location>>> {
     let (meaning, at) = place(asked, params.text_document_position_params)?;
-    let others = users(asked, &meaning, at)?;
-    let all: Vec<&Analysis> = analyses(&meaning, &others);
-    let found = ide::references(&all, &meaning.analysis, at, params.context.include_declaration);
+    let users = users(asked, &meaning, at)?;
+    let found =
+        ide::references(&users.analyses(), &users.own.analysis, at, params.context.include_declaration);
     let located: BTreeSet<(Key, [u32; 4])> =
-        found.iter().filter_map(|place| locate(&meaning, &others, place)).map(sortable).collect();
+        found.iter().filter_map(|place| users.locate(place)).map(sortable).collect();
     let location = |(key, [a, b, c, d]): (Key, [u32; 4])| lsp::Location {
         uri: uri(asked.view, &key),
         range: lsp::Range {
@@ -82,12 +82,15 @@ pub fn prepare(
 /// The edits that give it another name.
 pub fn rename(asked: &mut Asked, params: lsp::RenameParams) -> Answer<Option<lsp::WorkspaceEdit>> {
     let (meaning, at) = place(asked, params.text_document_position_params)?;
-    let others = users(asked, &meaning, at)?;
-    let all = analyses(&meaning, &others);
-    let edits = ide::rename(&all, &meaning.analysis, at, &params.new_name).map_err(Failure::plain)?;
+    let users = users(asked, &meaning, at)?;
+    if !users.complete {
+        return Err(Failure::plain("the workspace has too many files to find all uses"));
+    }
+    let edits = ide::rename(&users.analyses(), &users.own.analysis, at, &params.new_name);
+    let edits = edits.map_err(Failure::plain)?;
     let mut by_file: BTreeMap<Key, Vec<lsp::TextEdit>> = BTreeMap::new();
     for edit in edits {
-        let place = locate(&meaning, &others, &edit.at);
+        let place = users.locate(&edit.at);
         let (key, range) = place.ok_or_else(|| Failure::plain("a file that uses it cannot be read"))?;
         by_file.entry(key).or_default().push(lsp::TextEdit { range, new_text: edit.text });
     }
@@ -98,15 +101,6 @@ fn place(asked: &mut Asked, params: lsp::TextDocumentPositionParams) -> Answer<(
     let meaning = asked.meaning(&params.text_document.uri)?;
     let at = meaning.byte(params.position);
     Ok((meaning, at))
-}
-
-fn analyses<'a>(meaning: &'a Meaning, others: &'a [Arc<Meaning>]) -> Vec<&'a Analysis> {
-    std::iter::once(&meaning.analysis).chain(others.iter().map(|other| &other.analysis)).collect()
-}
-
-/// Where bytes of a file are that one of the analyses is made of.
-fn locate(meaning: &Meaning, others: &[Arc<Meaning>], place: &ide::Location) -> Option<(Key, lsp::Range)> {
-    meaning.place(place).or_else(|| others.iter().find_map(|other| other.place(place)))
 }
 
 fn sortable((key, range): (Key, lsp::Range)) -> (Key, [u32; 4]) {

@@ -1,14 +1,15 @@
 //! What texts declare.
 
-use super::super::analyst::{Meaning, uri};
+use super::super::analyst::{Meaning, range, uri};
+use super::super::document::Text;
 use super::super::documents::Key;
 use super::super::view::View;
 use super::super::work::{Answer, Asked, Failure};
-use super::workspace::scenes;
+use super::workspace::{scenes, text_of};
 use gen_lsp_types as lsp;
-use rt_lang::ide::{Symbol, SymbolKind};
+use rt_lang::ide::{Symbol, SymbolKind, outline};
+use rt_lang::source::Source;
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 /// The most symbols of a workspace that are told.
 const MOST: usize = 1_000;
@@ -58,28 +59,20 @@ pub fn workspace(
     params: lsp::WorkspaceSymbolParams,
 ) -> Answer<Option<lsp::WorkspaceSymbolResponse>> {
     let mut found = vec![];
+    let encoding = asked.view.session.encoding;
     for key in all_scenes(asked.view) {
         if asked.is_cancelled() {
             return Err(Failure::cancelled());
         }
-        let stop = {
-            let asked = &*asked;
-            let stop = || asked.is_cancelled();
-            match asked.view.documents.get(&key) {
-                Some(_) => None,
-                None => Some(Meaning::find(asked.view, &key, &stop).map(Arc::new)),
-            }
-        };
-        let meaning = match stop {
-            Some(saved) => saved,
-            // One that is changing is told of next time.
-            None => asked.meaning_of(&key).and_then(Result::ok),
-        };
-        let Some(meaning) = meaning else { continue };
-        flatten(&meaning.analysis.symbols(), None, &mut |symbol, container| {
+        let open = asked.view.documents.get(&key).map(|document| document.text.clone());
+        let saved = || key.path().and_then(text_of).map(Text::new);
+        let Some(text) = open.or_else(saved) else { continue };
+        // By its form alone: what hundreds of scenes mean takes long to find out.
+        let symbols = outline(&Source::new("", text.whole().as_str()));
+        flatten(&symbols, None, &mut |symbol, container| {
             if found.len() < MOST && is_like(&symbol.name, &params.query) {
-                let location =
-                    lsp::Location { uri: uri(asked.view, &key), range: meaning.range(symbol.select) };
+                let range = range(&text, symbol.select.range(), encoding);
+                let location = lsp::Location { uri: uri(asked.view, &key), range };
                 found.push(lsp::WorkspaceSymbol {
                     location: lsp::WorkspaceSymbolLocation::Location(location),
                     data: None,
@@ -87,13 +80,16 @@ pub fn workspace(
                 });
             }
         });
+        if found.len() == MOST {
+            break;
+        }
     }
     Ok(Some(lsp::WorkspaceSymbolResponse::WorkspaceSymbolList(found)))
 }
 
 /// The open scenes, and those of the folders of the workspace.
 fn all_scenes(view: &View) -> BTreeSet<Key> {
-    let saved = view.folders.iter().flat_map(|folder| scenes(folder)).map(Key::File);
+    let saved = view.folders.iter().flat_map(|folder| scenes(folder, folder).0).map(Key::File);
     view.documents.iter().map(|(key, _)| key.clone()).chain(saved).collect()
 }
 

@@ -43,9 +43,7 @@ fn name(kind: TokenKind) -> &'static str {
 
 /// The words of a document.
 pub fn full(asked: &mut Asked, params: lsp::SemanticTokensParams) -> Answer<Option<lsp::SemanticTokens>> {
-    let meaning = asked.meaning(&params.text_document.uri)?;
-    let all = 0..meaning.analysis.source().text.len();
-    Ok(Some(numbers(&meaning, &meaning.analysis.tokens(all))))
+    words(asked, &params.text_document.uri, None)
 }
 
 /// The words of a part of it.
@@ -53,9 +51,14 @@ pub fn part(
     asked: &mut Asked,
     params: lsp::SemanticTokensRangeParams,
 ) -> Answer<Option<lsp::SemanticTokens>> {
-    let meaning = asked.meaning(&params.text_document.uri)?;
-    let tokens = meaning.analysis.tokens(meaning.bytes(params.range));
-    Ok(Some(numbers(&meaning, &tokens)))
+    words(asked, &params.text_document.uri, Some(params.range))
+}
+
+fn words(asked: &mut Asked, uri: &lsp::Uri, part: Option<lsp::Range>) -> Answer<Option<lsp::SemanticTokens>> {
+    let (document, meaning) = (asked.document(uri)?, asked.meaning(uri)?);
+    let range = part.map_or(0..meaning.analysis.source().text.len(), |part| meaning.bytes(part));
+    let tokens = meaning.analysis.tokens(range, &|| asked.spoilt(&document).is_some());
+    asked.spoilt(&document).map_or_else(|| Ok(Some(numbers(&meaning, &tokens))), Err)
 }
 
 /// Each as lines and units from the one before.
