@@ -39,7 +39,8 @@ def main():
     bare = None
     with tempfile.TemporaryDirectory() as desk:
         for count in [1, 10**3, 10**4, 10**5, 10**6, 10**7]:
-            scene = [f"{ROOT}/xtask/compare/balls.rt", "--set", f"count={count}", "--max-items", str(10**7)]
+            limits = ["--max-items", str(10**7), "--max-things", str(10**7 + 10)]
+            scene = [f"{ROOT}/xtask/compare/balls.rt", "--set", f"count={count}", *limits]
             read, _ = run(["check", *scene])
             pixel, memory = run(["build", *scene, "--crop", "320,240,1,1", "--samples", "1", "-o", f"{desk}/balls.exr"])
             # What the process takes anyway is not the balls'.
