@@ -152,17 +152,14 @@ fn decode_png(file: &[u8]) -> Result<Image, ImageError> {
     let info = reader.next_frame(&mut bytes).map_err(broken)?;
     bytes.truncate(info.buffer_size());
     let channels = info.color_type.samples();
-    let values: Vec<f32> = match info.bit_depth {
+    match info.bit_depth {
         png::BitDepth::Sixteen => {
             let table = decoding_table(u16::MAX);
-            bytes
-                .chunks_exact(2)
-                .map(|pair| table[usize::from(u16::from_be_bytes([pair[0], pair[1]]))])
-                .collect()
+            let value = |pair: &[u8]| table[usize::from(u16::from_be_bytes([pair[0], pair[1]]))];
+            from_channels(info.width, info.height, bytes.chunks_exact(2).map(value), channels)
         }
-        _ => from_bytes(&bytes),
-    };
-    from_channels(info.width, info.height, &values, channels)
+        _ => from_bytes(info.width, info.height, &bytes, channels),
+    }
 }
 
 fn decode_jpeg(file: &[u8]) -> Result<Image, ImageError> {
@@ -178,7 +175,7 @@ fn decode_jpeg(file: &[u8]) -> Result<Image, ImageError> {
     let (width, height) = (width as u32, height as u32);
     check_size(width, height)?;
     let bytes = decoder.decode().map_err(broken)?;
-    from_channels(width, height, &from_bytes(&bytes), 3)
+    from_bytes(width, height, &bytes, 3)
 }
 
 fn decode_webp(file: &[u8]) -> Result<Image, ImageError> {
@@ -189,7 +186,7 @@ fn decode_webp(file: &[u8]) -> Result<Image, ImageError> {
     let channels = usize::from(decoder.color_type().channel_count());
     let mut bytes = vec![0; width as usize * height as usize * channels];
     decoder.read_image(&mut bytes).map_err(broken)?;
-    from_channels(width, height, &from_bytes(&bytes), channels)
+    from_bytes(width, height, &bytes, channels)
 }
 
 fn decode_hdr(file: &[u8]) -> Result<Image, ImageError> {
@@ -199,9 +196,8 @@ fn decode_hdr(file: &[u8]) -> Result<Image, ImageError> {
     check_size(width, height)?;
     let mut bytes = vec![0; 12 * width as usize * height as usize];
     decoder.read_image(&mut bytes).map_err(broken)?;
-    let values: Vec<f32> =
-        bytes.chunks_exact(4).map(|word| f32::from_ne_bytes([word[0], word[1], word[2], word[3]])).collect();
-    from_channels(width, height, &values, 3)
+    let value = |word: &[u8]| f32::from_ne_bytes([word[0], word[1], word[2], word[3]]);
+    from_channels(width, height, bytes.chunks_exact(4).map(value), 3)
 }
 
 fn decode_exr(file: &[u8]) -> Result<Image, ImageError> {
@@ -232,19 +228,29 @@ fn decoding_table(most: u16) -> Vec<f32> {
     (0..=most).map(|code| decode_srgb(f64::from(code) / f64::from(most)) as f32).collect()
 }
 
-fn from_bytes(bytes: &[u8]) -> Vec<f32> {
+/// Pixels of channels of a byte each, display-referred.
+fn from_bytes(width: u32, height: u32, bytes: &[u8], channels: usize) -> Result<Image, ImageError> {
     let table = decoding_table(255);
-    bytes.iter().map(|byte| table[usize::from(*byte)]).collect()
+    from_channels(width, height, bytes.iter().map(|byte| table[usize::from(*byte)]), channels)
 }
 
-/// Pixels of one (grey), two (grey, alpha), three or four channels. The opaque has the value 1, curve or not.
-fn from_channels(width: u32, height: u32, values: &[f32], channels: usize) -> Result<Image, ImageError> {
-    if values.len() != width as usize * height as usize * channels {
+/// Pixels of one (grey), two (grey, alpha), three or four channels. The opaque has the value 1, curve or not. The values
+/// are taken one by one, for a picture may be large.
+fn from_channels(
+    width: u32,
+    height: u32,
+    mut values: impl ExactSizeIterator<Item = f32>,
+    channels: usize,
+) -> Result<Image, ImageError> {
+    let count = width as usize * height as usize;
+    if values.len() != count * channels || !(1..=4).contains(&channels) {
         return Err(ImageError::Broken("picture", "has another size than it says".into()));
     }
-    let mut pixels = Vec::with_capacity(values.len() / channels);
-    for (index, pixel) in values.chunks_exact(channels).enumerate() {
-        let (color, alpha) = match *pixel {
+    let mut pixels = Vec::with_capacity(count);
+    for index in 0..count {
+        let mut pixel = [0.0; 4];
+        pixel[..channels].iter_mut().zip(&mut values).for_each(|(channel, value)| *channel = value);
+        let (color, alpha) = match pixel[..channels] {
             [grey] => ([grey; 3], 1.0),
             [grey, alpha] => ([grey; 3], alpha),
             [r, g, b] => ([r, g, b], 1.0),

@@ -8,6 +8,9 @@ use crate::math::{DVec2, DVec3, atan2};
 /// The most triangles a mesh may have.
 pub const MOST_TRIANGLES: usize = 10_000_000;
 
+/// The most vertices of a mesh: more cannot be of use.
+pub const MOST_VERTICES: usize = 3 * MOST_TRIANGLES;
+
 /// Coordinates beyond this would leave the range of numbers when they are multiplied.
 const FARTHEST: f64 = 1e50;
 

@@ -31,7 +31,7 @@ const STEPS: &[(&str, Step)] = &[
     ("resume", resume),
     ("farm", farm),
     ("memory", memory),
-    ("licences", licences),
+    ("dependencies", dependencies),
     ("reference", reference::agreement),
     ("export", export::agreement),
     ("preview", preview::checks),
@@ -59,6 +59,10 @@ cargo xtask latency [ROUNDS]
 
   drives the page of `rtc watch` in Chromium, on an idle machine, and prints how long a save takes to be seen
 
+cargo xtask many
+
+  builds a thousand to ten million balls, on an idle machine, and prints what memory and time they take
+
 cargo xtask grammar
 
   makes the parser of editors/tree-sitter-rt from its grammar.js (node)
@@ -73,8 +77,9 @@ cargo xtask e2e [STEP…]
   full-disk  a disk that fills up while a picture is written
   resume     a build that is killed 200 times and goes on, to the same bytes; signals, and a full disk (minutes)
   farm       four workers of a real Slurm, one of them lost midway (slurmctld, slurmd and munge, of Debian; as root)
-  memory     hostile sources within 2 GiB of address space
-  licences   every dependency's licence is one that deny.toml allows
+  memory     every limit, hostile sources and files, and a million balls, each within a cap on its address space (minutes)
+  dependencies what others wrote: its licences and sources, bans, checksums, versions that were taken back, which crates.io is
+             asked for, and advisories where RustSec's database is at hand
   reference  the room against a converged picture of another renderer (minutes)
   export     exported scenes against Mitsuba (from PyPI) and POV-Ray (povray, of Debian)
   preview    the page of `rtc watch` in a browser (chromium, of Debian; playwright-core, from npm, which needs node)
@@ -103,6 +108,7 @@ fn main() -> ExitCode {
     let ended = match arguments.split_first() {
         Some((task, steps)) if task == "e2e" => e2e(steps),
         Some((task, [])) if task == "gallery" => gallery(),
+        Some((task, [])) if task == "many" => many(),
         Some((task, [])) if task == "grammar" => editors::grammar(),
         Some((task, arguments)) if task == "compare" => compare::compare(arguments),
         Some((task, arguments)) if task == "lsp" => lsp::latency(arguments),
@@ -191,6 +197,15 @@ fn gallery() -> Outcome {
     Ok(())
 }
 
+/// Measures scenes of ever more balls.
+fn many() -> Outcome {
+    let root = root()?;
+    run(Command::new("cargo").args(["build", "--quiet", "--release", "--bin", "rtc"]).current_dir(&root))?;
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
+    let rtc = root.join(target).join("release/rtc");
+    run(Command::new("python3").arg(root.join("xtask/compare/many.py")).arg(rtc).arg(&root))
+}
+
 /// The folder of the repository.
 fn root() -> Result<PathBuf, String> {
     Ok(Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("xtask has no parent folder")?.to_path_buf())
@@ -244,6 +259,6 @@ fn mattes(place: &Place) -> Outcome {
     script(place, &python.to_string_lossy(), "mattes.py")
 }
 
-fn licences(place: &Place) -> Outcome {
-    script(place, "python3", "licences.py")
+fn dependencies(place: &Place) -> Outcome {
+    script(place, "python3", "dependencies.py")
 }

@@ -91,12 +91,12 @@ fn starts(program: &str) -> bool {
 
 /// A Python that has Mitsuba, in an environment in a folder, made if need be.
 pub fn mitsuba(folder: &Path) -> Result<PathBuf, String> {
-    python(folder, "import mitsuba, numpy", &["mitsuba==3.9.1", "numpy"])
+    python(folder, "import mitsuba, numpy", &["mitsuba==3.9.1", "numpy==2.4.6"])
 }
 
 /// A Python that reads Cryptomatte, in an environment in a folder, made if need be.
 pub fn cryptomatte(folder: &Path) -> Result<PathBuf, String> {
-    let packages = ["cryptomatte-api==1.0.0", "OpenEXR==3.5.3", "numpy"];
+    let packages = ["cryptomatte-api==1.0.0", "OpenEXR==3.5.3", "numpy==2.4.6"];
     python(folder, "import cryptomatte_api, OpenEXR, numpy", &packages)
 }
 

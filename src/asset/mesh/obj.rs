@@ -6,6 +6,10 @@ use tobj::{LoadError, LoadOptions};
 
 /// Reads vertices and faces; lines and points are left out, and materials are the scene's.
 pub(super) fn read(bytes: &[u8]) -> Result<Raw, String> {
+    // A face of eight bytes takes ten times as many once it is read.
+    if bytes.split(|byte| *byte == b'\n').filter(|line| line.starts_with(b"f ")).count() > MOST_TRIANGLES {
+        return Err(format!("has more than {MOST_TRIANGLES} faces"));
+    }
     let options =
         LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
     let no_materials = |_: &std::path::Path| Err(LoadError::OpenFileFailed);

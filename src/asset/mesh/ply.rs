@@ -1,6 +1,6 @@
 //! PLY files: text and binary, of either order of bytes.
 
-use super::{MOST_TRIANGLES, Raw};
+use super::{MOST_TRIANGLES, MOST_VERTICES, Raw};
 use crate::math::{DVec2, DVec3};
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{
@@ -17,11 +17,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raw, String> {
         fits(element, &header, bytes.len())?;
         match element.name.as_str() {
             "vertex" => {
+                within(element, MOST_VERTICES, "vertices")?;
                 let parser = Parser::<Vertex>::new();
                 let vertices = parser.read_payload_for_element(&mut reader, element, &header);
                 take_vertices(&vertices.map_err(refuse)?, element, &mut raw)?;
             }
             "face" => {
+                within(element, MOST_TRIANGLES, "faces")?;
                 let parser = Parser::<Face>::new();
                 let faces = parser.read_payload_for_element(&mut reader, element, &header);
                 take_faces(&faces.map_err(refuse)?, &mut raw)?;
@@ -59,6 +61,11 @@ fn fits(element: &ElementDef, header: &Header, bytes: usize) -> Result<(), Strin
     Ok(())
 }
 
+/// What a few bytes stand for in the file is much larger once it is read.
+fn within(element: &ElementDef, most: usize, what: &str) -> Result<(), String> {
+    if element.count <= most { Ok(()) } else { Err(format!("has more than {most} {what}")) }
+}
+
 fn take_vertices(vertices: &[Vertex], element: &ElementDef, raw: &mut Raw) -> Result<(), String> {
     let has = |names: &[&str]| names.iter().all(|name| element.properties.iter().any(|(key, _)| key == name));
     if !has(&["x", "y", "z"]) {
@@ -76,11 +83,11 @@ fn take_vertices(vertices: &[Vertex], element: &ElementDef, raw: &mut Raw) -> Re
 
 fn take_faces(faces: &[Face], raw: &mut Raw) -> Result<(), String> {
     for Face { corners } in faces {
+        if raw.triangles.len() + corners.len().saturating_sub(2) > MOST_TRIANGLES {
+            return Err(format!("has more than {MOST_TRIANGLES} triangles"));
+        }
         for pair in corners.get(1..).unwrap_or_default().windows(2) {
             raw.triangles.push([corners[0], pair[0], pair[1]]);
-        }
-        if raw.triangles.len() > MOST_TRIANGLES {
-            return Err(format!("has more than {MOST_TRIANGLES} triangles"));
         }
     }
     Ok(())

@@ -65,6 +65,29 @@ fn what_is_no_mesh_is_refused_with_a_reason() {
 }
 
 #[test]
+fn what_would_take_much_more_memory_than_the_file_is_not_read() {
+    let ply = |element: &str, most: usize, property: &str, size: usize| {
+        let head = format!(
+            "ply\nformat binary_little_endian 1.0\nelement {element} {}\nproperty {property}\nend_header\n",
+            most + 1
+        );
+        let mut file = head.into_bytes();
+        file.resize(file.len() + size * (most + 1), 0);
+        file
+    };
+    let mut obj = b"v 0 0 0\n".to_vec();
+    (0..=MOST_TRIANGLES).for_each(|_| obj.extend(b"f 1 1 1\n"));
+    for (file, words) in [
+        (ply("vertex", MOST_VERTICES, "char x", 1), "30000000 vertices"),
+        (ply("face", MOST_TRIANGLES, "list char char vertex_indices", 1), "10000000 faces"),
+        (obj, "10000000 faces"),
+    ] {
+        let error = Mesh::decode(&file).unwrap_err();
+        assert!(error.contains(words), "{error}");
+    }
+}
+
+#[test]
 fn no_bytes_do_harm() {
     let mut state = 7u32;
     let mut random = || {
