@@ -1,11 +1,13 @@
 //! The flags and their help.
 
+mod animating;
 mod keeping;
 mod merge;
 mod tools;
 mod values;
 mod why;
 
+pub use animating::{Animating, Only};
 use clap::{Args, Parser, Subcommand};
 use keeping::noise;
 pub use keeping::{Every, Halting, Keeping, Resume, Shard};
@@ -129,6 +131,7 @@ Examples:
   rtc build balls.rt --crop 0,0,320,240 -o part.exr  only the top left quarter
   rtc build balls.rt --noise 1% --time 10min         until it is clean, but no longer
   rtc build balls.rt --samples 4096 --checkpoint     if it is ended, the same again goes on
+  rtc build balls.rt --sweep \"t = 0 to 1\" --frames 48 -o balls.webp    a film
   rtc build *.rt                                     each picture beside its scene
   cat balls.rt | rtc build - -o - > balls.png        standard input and output";
 
@@ -211,6 +214,10 @@ pub struct Build {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub keeping: Keeping,
+
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub animating: Animating,
 
     #[command(flatten)]
     #[allow(missing_docs)]

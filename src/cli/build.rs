@@ -1,5 +1,6 @@
 //! `rtc build`: scenes to pictures.
 
+use super::animate::{self, has_number};
 use super::args::{Build, Keeping, Resume};
 use super::input::is_standard;
 use super::interrupt::Interrupt;
@@ -36,22 +37,37 @@ struct Job {
 pub struct Context<'a> {
     /// The flags.
     pub arguments: &'a Build,
-    threads: ThreadPool,
+    /// On which pictures are traced.
+    pub threads: ThreadPool,
     /// Where things are said.
     pub terminal: Terminal,
     /// Whether to end.
     pub interrupt: &'a Interrupt,
 }
 
-/// Makes the pictures in turn, also those behind one that fails.
-pub fn run(arguments: &Build, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
-    let jobs = plan(arguments)?;
-    let threads = ThreadPoolBuilder::new().num_threads(arguments.taking.threads.unwrap_or(0)).build();
-    let threads = threads.map_err(|error| Problem::new(format!("cannot start the threads: {error}")))?;
-    let context = Context { arguments, threads, terminal, interrupt };
-    if arguments.keeping.keeps() {
-        interrupt.heed_requests();
+impl<'a> Context<'a> {
+    /// Starts the threads.
+    pub fn new(
+        arguments: &'a Build,
+        terminal: Terminal,
+        interrupt: &'a Interrupt,
+    ) -> Result<Context<'a>, Problem> {
+        let threads = ThreadPoolBuilder::new().num_threads(arguments.taking.threads.unwrap_or(0)).build();
+        let threads = threads.map_err(|error| Problem::new(format!("cannot start the threads: {error}")))?;
+        if arguments.keeping.keeps() {
+            interrupt.heed_requests();
+        }
+        Ok(Context { arguments, threads, terminal, interrupt })
     }
+}
+
+/// Makes the pictures in turn, also those behind one that fails; or a film.
+pub fn run(arguments: &Build, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
+    if arguments.animating.frames.is_some() {
+        return animate::run(arguments, terminal, interrupt);
+    }
+    let jobs = plan(arguments)?;
+    let context = Context::new(arguments, terminal, interrupt)?;
     let mut messenger = Messenger::new(&arguments.messages, terminal, arguments.quiet);
     let mut worst = Exit::Done;
     for job in &jobs {
@@ -74,6 +90,11 @@ fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
         ([scene], []) if is_standard(scene) => {
             let problem = Problem::new("a scene from standard input has no name to put its picture beside");
             return Err(problem.help("say where it goes: `-o picture.png`, or `-o -` for standard output"));
+        }
+        (_, [numbered, ..]) if has_number(numbered) => {
+            let problem =
+                Problem::new(format!("`{}` is the name of frames, and there are none", numbered.display()));
+            return Err(problem.help("ask for some: `--sweep \"t = 0 to 1\" --frames 48`"));
         }
         ([scene], outputs @ [_, ..]) => vec![Job { scene: scene.clone(), targets: targets(outputs)? }],
         (_, [_, ..]) => {
@@ -113,9 +134,15 @@ fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
 pub fn targets(outputs: &[PathBuf]) -> Result<Vec<Target>, Problem> {
     let targets: Vec<Target> =
         outputs.iter().map(|path| Target::from_argument(path)).collect::<Result<_, _>>()?;
-    match first_repeated(&paths(&targets)) {
+    refuse_repeated(&paths(&targets))?;
+    Ok(targets)
+}
+
+/// A place holds one picture.
+pub fn refuse_repeated(outputs: &[PathBuf]) -> Result<(), Problem> {
+    match first_repeated(outputs) {
         Some(twice) => Err(Problem::new(format!("the output `{}` is given twice", twice.display()))),
-        None => Ok(targets),
+        None => Ok(()),
     }
 }
 
@@ -148,7 +175,7 @@ pub fn refuse_idle_depth(depth: Depth, targets: &[Target]) -> Result<(), Problem
 }
 
 /// `--aov` must find an EXR to hold its channels, and each of them once.
-fn refuse_idle_aovs(wanted: &[Aov], targets: &[Target]) -> Result<(), Problem> {
+pub fn refuse_idle_aovs(wanted: &[Aov], targets: &[Target]) -> Result<(), Problem> {
     let repeated = |(index, aov): (usize, &Aov)| wanted[..index].contains(aov);
     if wanted.iter().enumerate().any(repeated) {
         return Err(Problem::new("`--aov` names something twice"));
@@ -226,10 +253,10 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
         return Ok(Exit::Diagnostics);
     };
     let window = window(scene, arguments.crop)?;
-    let staged = stage(context, job, scene, window)?;
+    let staged = stage(context, &job.targets, scene, window)?;
     let Some(from) = compiled.provenance(&loaded.sources) else { return Ok(Exit::Diagnostics) };
     let plan = Plan::new(arguments, from, window, &job.targets)?;
-    let mut traced = context.threads.install(|| trace(context, &job.scene, plan))?;
+    let mut traced = context.threads.install(|| trace(context, &job.scene, plan, None))?;
     context.threads.install(|| match &traced.sums {
         Some((subject, making)) => write_share(subject, making, &traced.facts, staged),
         None => {
@@ -263,7 +290,7 @@ const MOST_CUT: f64 = 0.05;
 const MOST_BURNT_OUT: f64 = 0.25;
 
 /// What is probably not meant in a picture that is done. Who limits the samples knows that there may be noise.
-fn findings(scene: &Scene, traced: &Traced, limited: bool) -> Vec<Finding> {
+pub fn findings(scene: &Scene, traced: &Traced, limited: bool) -> Vec<Finding> {
     let Traced { stops, fitting, samples: [_, samples], .. } = *traced;
     let mut findings = vec![];
     if let Some(noise) = traced.facts.noise
@@ -300,7 +327,7 @@ fn summary(job: &Job, scene: &Scene, traced: &Traced, time: Duration) -> String 
 }
 
 /// How many samples were taken, what noise they leave, and why no more.
-fn samples(traced: &Traced) -> String {
+pub fn samples(traced: &Traced) -> String {
     let Traced { samples: [least, most], mean_samples, .. } = *traced;
     let count = match (least, most) {
         (1, 1) => "1 sample".to_string(),
@@ -319,7 +346,7 @@ fn samples(traced: &Traced) -> String {
 }
 
 /// The pixels to trace.
-fn window(scene: &Scene, crop: Option<[u32; 4]>) -> Result<Window, Problem> {
+pub fn window(scene: &Scene, crop: Option<[u32; 4]>) -> Result<Window, Problem> {
     let whole = Window::whole(scene.trace.size);
     let window = crop.map_or(whole, |[x, y, width, height]| Window { x, y, width, height });
     let ends = |start: u32, length: u32, most: u32| start.checked_add(length).is_some_and(|end| end <= most);
@@ -334,11 +361,16 @@ fn window(scene: &Scene, crop: Option<[u32; 4]>) -> Result<Window, Problem> {
 }
 
 /// Makes sure before any work that every output can be written.
-fn stage(context: &Context, job: &Job, scene: &Scene, window: Window) -> Result<Vec<Staged>, Problem> {
-    refuse_misfits(&job.targets, scene, window)?;
+pub fn stage(
+    context: &Context,
+    targets: &[Target],
+    scene: &Scene,
+    window: Window,
+) -> Result<Vec<Staged>, Problem> {
+    refuse_misfits(targets, scene, window)?;
     let Context { arguments, interrupt, .. } = context;
     let stage = if arguments.keeping.keeps() { Target::stage_again } else { Target::stage };
-    job.targets.iter().map(|target| stage(target, interrupt)).collect()
+    targets.iter().map(|target| stage(target, interrupt)).collect()
 }
 
 /// A format must be able to hold the picture.

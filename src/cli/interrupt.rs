@@ -6,6 +6,7 @@ use rt_lang::render::Control;
 use std::collections::BTreeSet;
 use std::io;
 use std::path::PathBuf;
+use std::process::{Child, ExitStatus};
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -13,12 +14,17 @@ use std::time::Duration;
 /// How long the work may take to stop by itself before the process is ended.
 const GRACE: Duration = Duration::from_millis(40);
 
+/// How often it is looked whether a program has ended.
+const PERIOD: Duration = Duration::from_millis(10);
+
 /// Whether the process is asked to end, and what to tidy up then.
 #[derive(Clone, Default)]
 pub struct Interrupt {
     /// The render that is to stop first.
     control: Arc<Mutex<Option<Arc<Control>>>>,
     unfinished: Arc<Mutex<BTreeSet<PathBuf>>>,
+    /// The program that works for this one, and ends with it.
+    child: Arc<Mutex<Option<Child>>>,
     /// Whether it was asked to end.
     asked: Arc<AtomicBool>,
     /// Whether the work under way ends the process when it was asked to.
@@ -94,6 +100,35 @@ impl Interrupt {
         finished
     }
 
+    /// Ends a program when this one is asked to end, before what it writes is removed.
+    pub fn end_with(&self, child: Child) {
+        *lock(&self.child) = Some(child);
+    }
+
+    /// Waits until that program ends by itself, and tells how; none where there is none.
+    pub fn wait_for_child(&self) -> io::Result<Option<ExitStatus>> {
+        loop {
+            // Not held while waiting, so that it can be ended.
+            let mut child = lock(&self.child);
+            let Some(running) = child.as_mut() else { return Ok(None) };
+            let status = running.try_wait();
+            if !matches!(status, Ok(None)) {
+                *child = None;
+                return status;
+            }
+            drop(child);
+            std::thread::sleep(PERIOD);
+        }
+    }
+
+    /// Ends that program at once.
+    pub fn end_child(&self) {
+        if let Some(mut child) = lock(&self.child).take() {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+
     fn end(&self, terminal: Terminal) {
         let again = self.asked.swap(true, SeqCst);
         let control = lock(&self.control).clone();
@@ -112,6 +147,7 @@ impl Interrupt {
     fn leave(&self, terminal: Terminal) -> ! {
         // Held until the process is gone, so that nobody makes or moves a file from here on.
         let unfinished = lock(&self.unfinished);
+        self.end_child();
         for path in unfinished.iter() {
             let _ = std::fs::remove_file(path);
         }

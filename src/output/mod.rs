@@ -5,6 +5,7 @@
 //! picture as developed for a display. Developing starts from the very `f32` values that the linear formats
 //! hold, so an EXR developed later gives the same bytes as a PNG written at once.
 
+pub mod animation;
 mod displayed;
 mod linear;
 mod openexr;

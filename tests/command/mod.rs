@@ -1,5 +1,6 @@
 //! The binary as its users run it: what it writes where, and how it ends.
 
+mod animation;
 mod bad_input;
 mod keeping;
 mod layout;
