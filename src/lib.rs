@@ -163,7 +163,7 @@ fn settings(sources: &mut Sources, options: &Options) -> (Vec<Setting>, Vec<Diag
 }
 
 /// A source that is compiled at one moment after the other: what does not depend on the moment is done once.
-pub struct Film<'f> {
+pub struct Series<'f> {
     files: &'f dyn Files,
     sources: Sources,
     main: SourceId,
@@ -172,12 +172,12 @@ pub struct Film<'f> {
     decoded: Decoded,
 }
 
-impl<'f> Film<'f> {
+impl<'f> Series<'f> {
     /// Parses a source and what it imports.
-    pub fn new(files: &'f dyn Files, mut sources: Sources, main: SourceId, options: Options) -> Film<'f> {
+    pub fn new(files: &'f dyn Files, mut sources: Sources, main: SourceId, options: Options) -> Series<'f> {
         let limits = options.limits;
         let imported = import::import(files, &mut sources, main, limits.levels, limits.text);
-        Film { files, sources, main, options, imported, decoded: Decoded::default() }
+        Series { files, sources, main, options, imported, decoded: Decoded::default() }
     }
 
     /// The texts of the source, of what it imports, and of the settings.
@@ -189,7 +189,7 @@ impl<'f> Film<'f> {
     pub fn at(&mut self, moment: Moment) -> Compiled {
         self.options.moment = moment;
         let (settings, slips) = settings(&mut self.sources, &self.options);
-        let Film { files, sources, main, options, imported, decoded } = &*self;
+        let Series { files, sources, main, options, imported, decoded } = &*self;
         let world = World { files: *files, sources, main: *main, options, stop: None, decoded };
         stack::deep(move || {
             let (program, found) = check::check(*files, sources, imported, &settings);

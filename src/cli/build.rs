@@ -134,15 +134,9 @@ fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
 pub fn targets(outputs: &[PathBuf]) -> Result<Vec<Target>, Problem> {
     let targets: Vec<Target> =
         outputs.iter().map(|path| Target::from_argument(path)).collect::<Result<_, _>>()?;
-    refuse_repeated(&paths(&targets))?;
-    Ok(targets)
-}
-
-/// A place holds one picture.
-pub fn refuse_repeated(outputs: &[PathBuf]) -> Result<(), Problem> {
-    match first_repeated(outputs) {
+    match first_repeated(&paths(&targets)) {
         Some(twice) => Err(Problem::new(format!("the output `{}` is given twice", twice.display()))),
-        None => Ok(()),
+        None => Ok(targets),
     }
 }
 

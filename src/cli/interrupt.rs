@@ -3,7 +3,7 @@
 use super::Exit;
 use super::terminal::Terminal;
 use rt_lang::render::Control;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::PathBuf;
 use std::process::{Child, ExitStatus};
@@ -23,8 +23,8 @@ pub struct Interrupt {
     /// The render that is to stop first.
     control: Arc<Mutex<Option<Arc<Control>>>>,
     unfinished: Arc<Mutex<BTreeSet<PathBuf>>>,
-    /// The program that works for this one, and ends with it.
-    child: Arc<Mutex<Option<Child>>>,
+    /// Programs that work for this one, and end with it.
+    children: Arc<Mutex<BTreeMap<u32, Child>>>,
     /// Whether it was asked to end.
     asked: Arc<AtomicBool>,
     /// Whether the work under way ends the process when it was asked to.
@@ -100,32 +100,33 @@ impl Interrupt {
         finished
     }
 
-    /// Ends a program when this one is asked to end, before what it writes is removed.
-    pub fn end_with(&self, child: Child) {
-        *lock(&self.child) = Some(child);
+    /// Ends a program when this one is asked to end, before what it writes is removed. Gives its number.
+    pub fn end_with(&self, child: Child) -> u32 {
+        let id = child.id();
+        lock(&self.children).insert(id, child);
+        id
     }
 
-    /// Waits until that program ends by itself, and tells how; none where there is none.
-    pub fn wait_for_child(&self) -> io::Result<Option<ExitStatus>> {
+    /// Waits until that program ends by itself, and tells how; none where it is gone.
+    pub fn wait_for_child(&self, id: u32) -> io::Result<Option<ExitStatus>> {
         loop {
             // Not held while waiting, so that it can be ended.
-            let mut child = lock(&self.child);
-            let Some(running) = child.as_mut() else { return Ok(None) };
-            let status = running.try_wait();
+            let mut children = lock(&self.children);
+            let Some(child) = children.get_mut(&id) else { return Ok(None) };
+            let status = child.try_wait();
             if !matches!(status, Ok(None)) {
-                *child = None;
+                children.remove(&id);
                 return status;
             }
-            drop(child);
+            drop(children);
             std::thread::sleep(PERIOD);
         }
     }
 
     /// Ends that program at once.
-    pub fn end_child(&self) {
-        if let Some(mut child) = lock(&self.child).take() {
-            let _ = child.kill();
-            let _ = child.wait();
+    pub fn end_child(&self, id: u32) {
+        if let Some(child) = lock(&self.children).remove(&id) {
+            kill(child);
         }
     }
 
@@ -147,7 +148,7 @@ impl Interrupt {
     fn leave(&self, terminal: Terminal) -> ! {
         // Held until the process is gone, so that nobody makes or moves a file from here on.
         let unfinished = lock(&self.unfinished);
-        self.end_child();
+        std::mem::take(&mut *lock(&self.children)).into_values().for_each(kill);
         for path in unfinished.iter() {
             let _ = std::fs::remove_file(path);
         }
@@ -158,6 +159,11 @@ impl Interrupt {
         terminal.line("interrupted");
         std::process::exit(Exit::Interrupted as i32);
     }
+}
+
+/// Ends a program. One that has ended is none the worse for it.
+fn kill(mut child: Child) {
+    let _ = child.kill().and_then(|()| child.wait());
 }
 
 /// What the locks guard is whole at any time, also after a panic.

@@ -284,7 +284,7 @@ fn ffmpeg_gets_the_frames_and_the_film_is_whole_or_not_there() {
         assert!(told.lines().any(|told| told == line), "{line} in {told}");
     }
     run("-o film.mkv").expect(0, &["film.mkv: video"]);
-    run("-o odd.mp4 --size 25x18").expect(2, &["even width and height", "--size 26x18"]);
+    run("-o odd.mp4 --crop 0,0,23,18").expect(2, &["even width and height", "--size 24x18"]);
 
     desk.put("film.mp4", "the film of yesterday");
     fake_ffmpeg(&desk, "cat > /dev/null; echo 'no such encoder' >&2; exit 1");
@@ -342,12 +342,12 @@ fn an_interrupted_film_leaves_what_was_there_and_goes_on() {
 
     // Kept samples of the frame under way, and done ones.
     let frames = "--frames 3 -o long.webp --checkpoint";
-    let mut slow = command_of(&desk, &format!("--samples 400 --size 320x240 {frames}"));
+    let mut slow = command_of(&desk, &format!("--samples 100 --size 320x240 {frames}"));
     interrupt(&mut slow, &|| desk.path("long.webp.frames/000001.exr.made").exists());
     assert!(!desk.path("long.webp").exists() && left(&desk).is_empty());
-    ended(command_of(&desk, &format!("--samples 400 --size 320x240 {frames}")).output().unwrap())
+    ended(command_of(&desk, &format!("--samples 100 --size 320x240 {frames}")).output().unwrap())
         .expect(0, &["frame 1 of 3 is done", "long.webp: animated WebP of 3 frames"]);
-    ended(command_of(&desk, "--samples 400 --size 320x240 --frames 3 -o once.webp").output().unwrap())
+    ended(command_of(&desk, "--samples 100 --size 320x240 --frames 3 -o once.webp").output().unwrap())
         .expect(0, &[]);
     assert_same(&desk.path("long.webp"), &desk.path("once.webp"));
 }

@@ -38,7 +38,7 @@ use rt_lang::output::animation::Reel;
 use rt_lang::output::{Facts, Format, Picture, decode_exr};
 use rt_lang::render::Tracer;
 use rt_lang::scene::{Background, Scene};
-use rt_lang::{Compiled, Film, Finding, Options};
+use rt_lang::{Compiled, Finding, Options, Series};
 use sink::Sink;
 use std::collections::BTreeSet;
 use std::fs;
@@ -64,12 +64,12 @@ fn film(context: &Context, orders: &Orders, messenger: &mut Messenger) -> Result
     }
     let overrides = Overrides { limited: halting.time.is_some(), ..taking.overrides() };
     let options = Options { sweep: animating.sweep.clone(), ..reading.options(overrides) };
-    let film = Film::new(&disk, input.sources, input.id, options);
+    let series = Series::new(&disk, input.sources, input.id, options);
     let mut studio = Studio {
         context,
         orders,
         disk: &disk,
-        film,
+        series,
         messenger,
         said: BTreeSet::new(),
         exposure: None,
@@ -93,7 +93,7 @@ struct Studio<'a, 'm> {
     context: &'a Context<'a>,
     orders: &'a Orders,
     disk: &'a Disk,
-    film: Film<'a>,
+    series: Series<'a>,
     messenger: &'a mut Messenger<'m>,
     /// What was said, of which frame ever: its code and place.
     said: BTreeSet<(&'static str, String, u32)>,
@@ -146,7 +146,7 @@ impl Studio<'_, '_> {
     /// Compiles a frame, and says of it what was not said of another. None where it has errors.
     fn compile(&mut self, number: u32) -> Result<Option<Compiled>, Problem> {
         let Orders { of, .. } = *self.orders;
-        let mut compiled = self.film.at(Moment { index: number - 1, of });
+        let mut compiled = self.series.at(Moment { index: number - 1, of });
         let diagnostics = std::mem::take(&mut compiled.diagnostics);
         let ended = self.say(&diagnostics)?;
         if let (Exit::Done, Some(scene)) = (ended, &mut compiled.scene) {
@@ -158,7 +158,7 @@ impl Studio<'_, '_> {
     }
 
     fn say(&mut self, diagnostics: &[Diagnostic]) -> Result<Exit, Problem> {
-        let sources = self.film.sources();
+        let sources = self.series.sources();
         let new = |diagnostic: &&Diagnostic| {
             let place = diagnostic.primary.span;
             self.said.insert((diagnostic.code.as_str(), sources.get(place.source).name.clone(), place.start))
@@ -203,7 +203,7 @@ impl Studio<'_, '_> {
         let Context { arguments, interrupt, terminal, ref threads, .. } = *self.context;
         let Some(compiled) = self.compile(number)? else { return Ok(Shot::Failed) };
         let targets = self.orders.targets(number)?;
-        let Some(from) = compiled.provenance(self.film.sources()) else { return Ok(Shot::Failed) };
+        let Some(from) = compiled.provenance(self.series.sources()) else { return Ok(Shot::Failed) };
         let (scene, depth, keeping) = (from.scene, arguments.taking.look.bits, &arguments.keeping);
         let window = build::window(scene, arguments.crop)?;
         let plan = Plan::new(arguments, from, window, &targets)?.of_frame();

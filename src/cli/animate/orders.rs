@@ -10,6 +10,7 @@ use super::names::{Form, Output, Pattern, place};
 use super::only;
 use rt_lang::output::animation::{Motion, Rate};
 use rt_lang::output::{Depth, Format};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -65,10 +66,11 @@ impl Orders {
         Ok(orders)
     }
 
-    /// Every file that is written first, frames by the first of them.
+    /// Every file that is written.
     pub fn paths(&self) -> Vec<PathBuf> {
         let films = self.films.iter().map(|(path, _)| place(path));
-        films.chain(self.each.iter().map(|pattern| pattern.path(self.numbers[0]))).collect()
+        let frames = |pattern| self.numbers.iter().map(move |number| Pattern::path(pattern, *number));
+        films.chain(self.each.iter().flat_map(frames)).collect()
     }
 
     /// The pictures of a frame.
@@ -99,9 +101,12 @@ impl Orders {
     }
 
     fn refuse_misfits(&self, arguments: &Build) -> Result<(), Problem> {
-        let first = self.targets(1)?;
-        build::refuse_repeated(&self.paths())?;
-        build::refuse_inputs_as_outputs(&arguments.scenes, &self.paths())?;
+        let (first, paths) = (self.targets(1)?, self.paths());
+        let mut known = BTreeSet::new();
+        if let Some(twice) = paths.iter().find(|path| !known.insert(*path)) {
+            return Err(Problem::new(format!("the output `{}` is given twice", twice.display())));
+        }
+        build::refuse_inputs_as_outputs(&arguments.scenes, &paths)?;
         build::refuse_idle_aovs(&arguments.aov, &first)?;
         let png = |(_, form): &(PathBuf, Form)| *form == Form::Own(Motion::Apng);
         let depth = if self.films.iter().any(png) { Depth::Eight } else { arguments.taking.look.bits };

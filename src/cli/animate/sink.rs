@@ -22,7 +22,7 @@ pub struct Sink {
     place: Place,
     interrupt: Interrupt,
     /// None before the first frame.
-    film: Option<Film>,
+    work: Option<Work>,
 }
 
 enum Place {
@@ -32,7 +32,7 @@ enum Place {
     Standard(Staged, File),
 }
 
-enum Film {
+enum Work {
     Own(Animation<BufWriter<File>>),
     Video(Video),
 }
@@ -66,28 +66,28 @@ impl Sink {
         } else {
             Place::Aside(Aside::beside(&to, interrupt)?)
         };
-        Ok(Sink { name, form, reel, depth, place, interrupt: interrupt.clone(), film: None })
+        Ok(Sink { name, form, reel, depth, place, interrupt: interrupt.clone(), work: None })
     }
 
     /// Adds a frame.
     pub fn add(&mut self, picture: &Picture, facts: &Facts) -> Result<(), Problem> {
-        let film = match self.film.take() {
-            Some(film) => film,
+        let work = match self.work.take() {
+            Some(work) => work,
             None => self.begin()?,
         };
         let name = &self.name;
-        match self.film.insert(film) {
-            Film::Own(animation) => {
+        match self.work.insert(work) {
+            Work::Own(animation) => {
                 animation.add(picture, facts).map_err(|error| cannot(name, &reason(error)))
             }
-            Film::Video(video) => {
+            Work::Video(video) => {
                 let frame = self.reel.raw(picture, facts);
                 video.add(&frame.map_err(|reason| cannot(name, &reason.to_string()))?)
             }
         }
     }
 
-    fn begin(&self) -> Result<Film, Problem> {
+    fn begin(&self) -> Result<Work, Problem> {
         match (self.form, &self.place) {
             (Form::Own(motion), place) => {
                 let file = match place {
@@ -96,10 +96,10 @@ impl Sink {
                 };
                 let to = BufWriter::new(file.map_err(|error| cannot(&self.name, &plain(&error)))?);
                 let animation = Animation::begin(motion, self.reel, self.depth, to);
-                animation.map(Film::Own).map_err(|error| cannot(&self.name, &reason(error)))
+                animation.map(Work::Own).map_err(|error| cannot(&self.name, &reason(error)))
             }
             (Form::Video(container), Place::Aside(aside)) => {
-                Video::begin(&self.reel, container, &aside.lend(), &self.interrupt).map(Film::Video)
+                Video::begin(&self.reel, container, &aside.lend(), &self.interrupt).map(Work::Video)
             }
             // Names tell them apart before.
             (Form::Video(_), Place::Standard(..)) => Err(cannot(&self.name, "a video needs a file")),
@@ -108,12 +108,12 @@ impl Sink {
 
     /// Ends the film, moves it to its place, and says in a line what it is.
     pub fn finish(self) -> Result<String, Problem> {
-        let Sink { name, form, reel, place, film, .. } = self;
-        match film {
-            Some(Film::Own(animation)) => {
+        let Sink { name, form, reel, place, work, .. } = self;
+        match work {
+            Some(Work::Own(animation)) => {
                 animation.finish().map_err(|error| cannot(&name, &reason(error)))?
             }
-            Some(Film::Video(video)) => video.finish()?,
+            Some(Work::Video(video)) => video.finish()?,
             None => {}
         }
         match place {

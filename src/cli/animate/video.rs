@@ -19,6 +19,7 @@ const MOST_SAID: u64 = 1 << 16;
 
 /// A video that is being made.
 pub struct Video {
+    id: u32,
     frames: Option<ChildStdin>,
     /// What it says on standard error.
     said: Option<JoinHandle<String>>,
@@ -105,7 +106,7 @@ impl Video {
             .spawn()
             .map_err(|error| Problem::new(format!("ffmpeg cannot be run: {}", plain(&error))))?;
         let (frames, errors) = (child.stdin.take(), child.stderr.take());
-        interrupt.end_with(child);
+        let id = interrupt.end_with(child);
         // It waits where nobody reads what it says.
         let read = move || {
             let mut said = vec![];
@@ -116,7 +117,7 @@ impl Video {
             String::from_utf8_lossy(&said).into_owned()
         };
         let said = std::thread::Builder::new().spawn(read).ok();
-        Ok(Video { frames, said, interrupt: interrupt.clone() })
+        Ok(Video { id, frames, said, interrupt: interrupt.clone() })
     }
 
     /// Sends a frame.
@@ -136,7 +137,7 @@ impl Video {
 
     fn end(&mut self) -> Result<(), Problem> {
         drop(self.frames.take());
-        let status = self.interrupt.wait_for_child();
+        let status = self.interrupt.wait_for_child(self.id);
         let said = self.said.take().and_then(|thread| thread.join().ok()).unwrap_or_default();
         match status {
             Ok(Some(status)) if status.success() => Ok(()),
@@ -150,7 +151,7 @@ impl Video {
 impl Drop for Video {
     fn drop(&mut self) {
         // Not finished, so what it makes is not wanted.
-        self.interrupt.end_child();
+        self.interrupt.end_child(self.id);
     }
 }
 
