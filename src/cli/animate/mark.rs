@@ -45,16 +45,20 @@ pub fn subject(scene: &Scene, plan: &Plan, aovs: &[Aov], depth: Depth) -> Subjec
     let more = [
         ("program", Facts::unknown().software),
         ("samples", limits.samples.to_string()),
-        ("noise", format!("{:?}", limits.noise)),
+        ("noise", or_none(limits.noise)),
         ("least samples", limits.least.to_string()),
-        ("time", format!("{:?}", limits.time)),
-        ("exposure", format!("{:?}", scene.develop.exposure)),
+        ("time", or_none(limits.time.map(|time| time.as_secs_f64()))),
+        ("exposure", or_none(scene.develop.exposure)),
         ("tonemap", scene.develop.tonemap.word().to_string()),
         ("bits", if depth == Depth::Sixteen { "16" } else { "8" }.to_string()),
         ("channels", names.join(" ")),
     ];
     subject.extend(more.map(|(name, value)| (name.to_string(), value)));
     subject
+}
+
+fn or_none(number: Option<f64>) -> String {
+    number.map_or("none".to_string(), |number| number.to_string())
 }
 
 /// Where the record of a frame is that goes to these files; none where it goes to none.
