@@ -2,12 +2,13 @@
 
 use divan::Bencher;
 use rt_lang::eval::Limits;
-use rt_lang::files::NoFiles;
+use rt_lang::files::{FileError, FilePath, Files, Memory};
 use rt_lang::ide::{Analysis, complete, signatures};
 use rt_lang::source::Source;
 use rt_lang::{Options, analyse};
 use scenes::Numbers;
 use std::fmt::Write;
+use std::sync::Arc;
 
 mod scenes;
 
@@ -17,10 +18,33 @@ fn main() {
 
 const LINES: usize = 2000;
 
+/// No files, and what was read before.
+#[derive(Default)]
+struct Desk(Memory);
+
+impl Files for Desk {
+    fn read(&self, _: &FilePath, _: usize) -> Result<Arc<[u8]>, FileError> {
+        Err(FileError::Missing)
+    }
+
+    fn memory(&self) -> Option<&Memory> {
+        Some(&self.0)
+    }
+}
+
+/// A text as it is edited: a letter longer each time.
+fn edited(text: &str) -> impl Fn() -> String {
+    let edits = std::cell::Cell::new(0);
+    move || {
+        edits.set(edits.get() + 1);
+        text.replacen("seat / 2", &format!("seat / {}", edits.get()), 1)
+    }
+}
+
 /// A text as people write them: parts, materials, groups, loops, and things that use them.
 fn written() -> String {
     let mut text = String::from(
-        "/// How many.\nparam count: int = 7 in 1 to 20\nplane { material: diffuse { color: #705848 } }\n",
+        "/// How many.\nparam count: int = 7 in 1 to 20\nplane { at: (0, -100, 0)m, material: diffuse { color: #705848 } }\n",
     );
     let mut numbers = Numbers(1);
     for block in 0.. {
@@ -63,64 +87,80 @@ fn flat() -> String {
     text
 }
 
-fn analysed(text: &str) -> Analysis {
+fn analysed(desk: &Desk, text: &str) -> Analysis {
     let source = Source::new("bench.rt", text);
-    let analysis = analyse(&NoFiles, source, &Options::default(), &|| false);
+    let analysis = analyse(desk, source, &Options::default(), &|| false);
     analysis.expect("nobody stops it")
+}
+
+/// The first time that a text is opened.
+#[divan::bench]
+fn diagnostics_at_first(bencher: Bencher) {
+    let text = written();
+    bencher.bench(|| analysed(&Desk::default(), &text));
 }
 
 #[divan::bench]
 fn diagnostics(bencher: Bencher) {
-    let text = written();
-    assert!(analysed(&text).diagnostics.is_empty(), "{:?}", analysed(&text).diagnostics.first());
-    bencher.bench(|| analysed(&text));
+    let (text, desk) = (written(), Desk::default());
+    assert!(
+        analysed(&desk, &text).diagnostics.is_empty(),
+        "{:?}",
+        analysed(&desk, &text).diagnostics.first()
+    );
+    bencher.with_inputs(edited(&text)).bench_local_refs(|text| analysed(&desk, text));
 }
 
 #[divan::bench]
 fn diagnostics_of_an_error(bencher: Bencher) {
-    let text = written().replacen("radius: 3cm", "raduis: 3cm", 1);
-    assert!(!analysed(&text).diagnostics.is_empty());
-    bencher.bench(|| analysed(&text));
+    let (text, desk) = (written().replacen("radius: 3cm", "raduis: 3cm", 1), Desk::default());
+    assert!(!analysed(&desk, &text).diagnostics.is_empty());
+    bencher.with_inputs(edited(&text)).bench_local_refs(|text| analysed(&desk, text));
 }
 
 #[divan::bench]
 fn diagnostics_of_rows(bencher: Bencher) {
-    let text = flat();
-    bencher.bench(|| analysed(&text));
+    let (text, desk) = (flat(), Desk::default());
+    bencher.with_inputs(edited(&text)).bench_local_refs(|text| analysed(&desk, text));
+}
+
+/// What completion takes where a text ends in an unfinished statement.
+fn completed(bencher: Bencher, unfinished: &str) {
+    let (text, desk) = (written() + unfinished, Desk::default());
+    let source = Source::new("bench.rt", text.as_str());
+    let found = || complete(&desk, &source, text.len(), &Limits::default(), &|| false);
+    assert!(found().len() > 4);
+    bencher.bench_local(found);
 }
 
 #[divan::bench]
 fn completion_of_a_field(bencher: Bencher) {
-    let text = format!("{}sphere {{ radius: 1m, ma", written());
-    let source = Source::new("bench.rt", text.as_str());
-    bencher.bench(|| complete(&NoFiles, &source, text.len(), &Limits::default(), &|| false));
+    completed(bencher, "sphere { radius: 1m, ma");
 }
 
 #[divan::bench]
 fn completion_of_a_value(bencher: Bencher) {
-    let text = format!("{}sphere {{ radius: r", written());
-    let source = Source::new("bench.rt", text.as_str());
-    bencher.bench(|| complete(&NoFiles, &source, text.len(), &Limits::default(), &|| false));
+    completed(bencher, "sphere { radius: r");
 }
 
 #[divan::bench]
 fn signature_of_a_part(bencher: Bencher) {
-    let text = format!("{}stool1 {{ seat: ", written());
+    let (text, desk) = (written() + "stool1 { seat: ", Desk::default());
     let source = Source::new("bench.rt", text.as_str());
-    bencher.bench(|| signatures(&NoFiles, &source, text.len(), &Limits::default(), &|| false));
+    bencher.bench_local(|| signatures(&desk, &source, text.len(), &Limits::default(), &|| false));
 }
 
 #[divan::bench]
 fn tokens(bencher: Bencher) {
     let text = written();
-    let analysis = analysed(&text);
+    let analysis = analysed(&Desk::default(), &text);
     bencher.bench(|| analysis.tokens(0..text.len()));
 }
 
 #[divan::bench]
 fn hover(bencher: Bencher) {
     let text = written();
-    let analysis = analysed(&text);
+    let analysis = analysed(&Desk::default(), &text);
     let at = text.rfind("glaze").expect("it is used") + 2;
     bencher.bench(|| analysis.hover(at));
 }
@@ -128,7 +168,7 @@ fn hover(bencher: Bencher) {
 #[divan::bench]
 fn the_rest(bencher: Bencher) {
     let text = written();
-    let analysis = analysed(&text);
+    let analysis = analysed(&Desk::default(), &text);
     let all = 0..text.len();
     bencher.bench(|| {
         (

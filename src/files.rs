@@ -5,9 +5,10 @@
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::span::Span;
+use std::any::{Any, TypeId};
 use std::collections::BTreeMap;
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The world outside, as far as a scene may see it.
 pub trait Files: Sync {
@@ -21,9 +22,28 @@ pub trait Files: Sync {
         vec![]
     }
 
+    /// Where what took time to find out of texts may be kept for the next time; nowhere, unless texts are read again and again.
+    fn memory(&self) -> Option<&Memory> {
+        None
+    }
+
     /// What a person calls a file.
     fn name(&self, path: &FilePath) -> String {
         path.to_string()
+    }
+}
+
+/// What is kept from one compilation for the next ones, by whoever finds it out: no answer depends on it, only how soon it comes.
+#[derive(Debug, Default)]
+pub struct Memory(Mutex<BTreeMap<TypeId, Arc<dyn Any + Send + Sync>>>);
+
+impl Memory {
+    /// What is kept of one sort; at first its default.
+    pub fn of<T: Any + Default + Send + Sync>(&self) -> Arc<T> {
+        // What is kept is whole at any time.
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let kept = kept.entry(TypeId::of::<T>()).or_insert_with(|| Arc::new(T::default()));
+        kept.clone().downcast().unwrap_or_default()
     }
 }
 

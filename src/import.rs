@@ -4,8 +4,8 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::files::{FileError, FilePath, Files};
 use crate::source::{Source, Sources};
 use crate::span::{SourceId, Span};
-use crate::syntax;
 use crate::syntax::ast::{self, Entry, Name, StatementKind};
+use crate::syntax::{self, Remembered};
 use std::collections::BTreeMap;
 
 /// So many times the longest source is the most that all imported files have together.
@@ -71,7 +71,9 @@ struct Importer<'a> {
 
 impl Importer<'_> {
     fn file(&mut self, source: SourceId, path: FilePath) -> usize {
-        let (tree, found) = syntax::parse_rows(source, &self.sources.get(source).text, self.limits);
+        let known = self.files.memory().map(|memory| memory.of::<Remembered>());
+        let text = &self.sources.get(source).text;
+        let (tree, found) = syntax::parse_again(source, text, self.limits, known.as_deref());
         self.out.diagnostics.extend(found);
         self.open.push(path.clone());
         let mut imports = BTreeMap::new();

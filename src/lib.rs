@@ -137,9 +137,8 @@ pub fn analyse(files: &dyn Files, main: Source, options: &Options, stop: Stop) -
     let mut sources = Sources::default();
     let main = sources.add(main);
     let (compiled, study) = run(files, &mut sources, main, options, Some(stop));
-    let Compiled { diagnostics, notes, scene, marks, .. } = compiled;
-    let camera = scene.map(|scene| scene.camera).zip(marks.camera);
-    (!stop()).then(|| Analysis::new(sources, main, diagnostics, notes, camera, study))
+    let Compiled { diagnostics, notes, .. } = compiled;
+    (!stop()).then(|| Analysis::new(sources, main, diagnostics, notes, study))
 }
 
 /// Runs all stages. `stop` is asked only by who keeps what is learnt.
@@ -271,6 +270,13 @@ impl World<'_> {
         }
         let mut lowered = lower::lower(&things, &options.overrides, files, sources, &meshes);
         diagnostics.append(&mut lowered.diagnostics);
+        if self.stop.is_some() {
+            let taken = lowered.scene.as_ref().map(|scene| (scene.camera, lowered.marks.camera));
+            let others = lowered.others.iter().map(|(camera, marks)| (*camera, marks.camera));
+            let written =
+                taken.into_iter().chain(others).filter_map(|(camera, place)| Some((camera, place?)));
+            study.cameras = written.collect();
+        }
         if self.is_stopped() {
             return (Compiled::unfinished(main), study);
         }

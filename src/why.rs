@@ -41,6 +41,10 @@ pub struct Why<'a> {
     pub pixel: [u32; 2],
     /// How many paths this is known from.
     pub samples: u32,
+    /// What chose how many.
+    pub samples_by: SamplesBy,
+    /// How many of them are brighter than the picture has room for, and count for as much as it has.
+    pub clipped: u32,
     /// Linear red, green and blue (sRGB's primaries) in W/(m²·sr), before exposure.
     pub radiance: [f64; 3],
     /// Standard error of the radiance's luminance; none below two samples.
@@ -51,12 +55,41 @@ pub struct Why<'a> {
     pub depth: Option<f64>,
     /// The mean normal in the world, on the side of the camera; none where nothing is met.
     pub normal: Option<[f64; 3]>,
-    /// What the pixel shows, the largest share first. The rest of it is the background.
+    /// What the pixel shows, the largest share first, and no more than the few largest.
     pub shows: Vec<Shown<'a>>,
-    /// Where its light comes from, the most first. Adds up to the radiance.
+    /// The further things that it shows.
+    pub others: Others,
+    /// The share of it that shows nothing but the background. It, those of `shows` and that of the others add up to 1.
+    pub background: f64,
+    /// Where its light comes from, the most first. Adds up to the radiance, but for rounding.
     pub lights: Vec<LightShare<'a>>,
-    /// By what kinds of paths, the most first. Adds up to the radiance.
+    /// By what kinds of paths, the most first. Adds up to the radiance, but for rounding.
     pub paths: Vec<PathShare>,
+}
+
+/// What chose from how many paths a pixel is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SamplesBy {
+    /// Whoever asked. They are the first ones of the picture's.
+    Command,
+    /// `samples` in the scene: they are the picture's.
+    Scene,
+    /// Nobody; a scene without `samples` has as many as the language says: they are the picture's.
+    Default,
+    /// The program: the scene asks for a level of noise, and how many that takes is known once the whole picture is made.
+    Noise,
+    /// A picture in the making, which has so many by now.
+    Picture,
+}
+
+/// Things that are only counted.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Others {
+    /// How many.
+    pub count: usize,
+    /// How much of the pixel they cover together.
+    pub share: f64,
 }
 
 /// Something that a pixel shows.
@@ -146,33 +179,42 @@ pub struct PathShare {
     pub share: f64,
 }
 
-/// The most things that a pixel is said to show.
+/// The most things that a pixel is said to show one by one.
 const MOST_SHOWN: usize = 8;
 
 impl<'a> Why<'a> {
     /// Names the parts of a pixel.
-    pub fn new(pixel: [u32; 2], apart: &Apart, from: Provenance<'a>) -> Why<'a> {
+    pub fn new(pixel: [u32; 2], apart: &Apart, samples_by: SamplesBy, from: Provenance<'a>) -> Why<'a> {
         let firsts = apart.firsts();
         let error = Some(apart.error()).filter(|error| error.is_finite());
-        let shows = firsts.shown().into_iter().take(MOST_SHOWN);
+        let shown = firsts.shown();
+        let (shows, others) = shown.split_at(shown.len().min(MOST_SHOWN));
         Why {
             schema: SCHEMA,
             pixel,
             samples: apart.samples(),
+            samples_by,
+            clipped: apart.clipped(),
             radiance: apart.mean().to_array(),
             error,
             coverage: apart.alpha(),
             depth: firsts.depth(),
             normal: firsts.normal().map(|n| n.to_array()),
-            shows: shows.map(|(id, share)| from.shown(id, share)).collect(),
+            shows: shows.iter().map(|(id, share)| from.shown(*id, *share)).collect(),
+            others: Others {
+                count: others.len(),
+                share: others.iter().fold(0.0, |sum, (_, share)| sum + share),
+            },
+            background: firsts.background(),
             lights: from.lights(apart),
             paths: paths(apart),
         }
     }
 }
 
+/// The share that a part has in the luminance of all.
 fn share_of(apart: &Apart, part: Rgb) -> f64 {
-    let whole = luminance(apart.mean());
+    let whole = luminance(apart.parts().map(|(.., part)| part).sum());
     if whole == 0.0 { 0.0 } else { luminance(part) / whole }
 }
 

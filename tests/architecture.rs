@@ -67,7 +67,8 @@ const EDGES: &[(&str, &[&str])] = &[
         ],
     ),
     ("report", &["span", "source", "diagnostic", "explain"]),
-    ("aov", &["math", "scene", "output", "render", "why"]),
+    // Places tell apart what has one name.
+    ("aov", &["span", "math", "scene", "output", "render", "why"]),
     // It names what the tracer found, by what lowering kept beside the scene.
     ("why", &["span", "source", "diagnostic", "color", "eval", "scene", "lower", "render"]),
 ];

@@ -8,6 +8,7 @@ mod change;
 mod command;
 mod diagnostics;
 mod documents;
+mod editors;
 mod folder;
 mod language;
 #[path = "../src/cli/lsp/document.rs"]

@@ -3,14 +3,16 @@
 use crate::folder::Folder;
 use rt_lang::color::Rgb;
 use rt_lang::lower::Overrides;
+use rt_lang::math::{PI, exp2};
 use rt_lang::render::apart::Apart;
 use rt_lang::render::first::MOST_FIRST_SAMPLES;
-use rt_lang::render::observer::PathKind;
+use rt_lang::render::light::Source as Lamp;
+use rt_lang::render::observer::{Contribution, Observer, PathKind};
 use rt_lang::render::{Control, Film, Tracer, Window};
 use rt_lang::source::{Source, Sources};
-use rt_lang::why::Why;
+use rt_lang::why::{SamplesBy, Why};
 use rt_lang::{Compiled, Options, compile};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// A scene that was compiled, with its texts.
@@ -45,7 +47,7 @@ impl Known {
         let tracer = self.tracer();
         let mut apart = Apart::new(tracer.prepass().scale);
         tracer.take_apart(pixel, 0..samples, &mut apart);
-        Why::new(pixel, &apart, self.compiled.provenance(&self.sources).unwrap())
+        Why::new(pixel, &apart, SamplesBy::Scene, self.compiled.provenance(&self.sources).unwrap())
     }
 }
 
@@ -67,15 +69,57 @@ camera { from: (0, 1.5, 5)m, look: (0, 0.5, 0)m }
 render { filter: mitchell }
 ";
 
-/// The parts of some pixels are a film's, light by light and path by path; gives the kinds of paths there are.
-fn assert_parts_are_the_whole(known: &Known, name: &str) -> BTreeSet<PathKind> {
+/// What a path says that it brings.
+#[derive(Default)]
+struct Told {
+    contributions: Vec<Contribution>,
+}
+
+impl Observer for Told {
+    fn contributed(&mut self, contribution: &Contribution) {
+        self.contributions.push(*contribution);
+    }
+}
+
+/// The sums of what the paths of a pixel say that they bring, each added to its light and kind of path, and by how much they
+/// may differ from what arrives: a path adds in single precision, and a film rounds each sample to half a unit.
+fn raw_parts(
+    tracer: &Tracer,
+    [x, y]: [u32; 2],
+    samples: u32,
+    scale: f64,
+) -> (BTreeMap<(Lamp, PathKind), Rgb>, Rgb) {
+    let mut parts: BTreeMap<(Lamp, PathKind), Rgb> = BTreeMap::new();
+    let mut slack = Rgb::ZERO;
+    for sample in 0..samples {
+        let mut told = Told::default();
+        let sampled = tracer.sample(x, y, sample, &mut told);
+        let (mut sum, mut sizes) = (Rgb::ZERO, Rgb::ZERO);
+        for part in told.contributions.iter().filter(|part| part.radiance != Rgb::ZERO) {
+            sum += sampled.weight * part.radiance;
+            sizes += sampled.weight.abs() * part.radiance.abs();
+            *parts.entry((part.source, part.kind())).or_default() += sampled.weight * part.radiance;
+        }
+        // Each sum of so many is off by as many roundings at most, and by those of doubles, which are nothing beside them.
+        let rounding = (told.contributions.len() + 1) as f64 * f64::from(f32::EPSILON) / 2.0 * sizes;
+        let off = (sum - sampled.radiance).abs();
+        assert!(off.cmple(rounding).all(), "{sum} in place of {} at {x}, {y}: {sample}", sampled.radiance);
+        slack += rounding + Rgb::splat(0.5 / scale);
+    }
+    let over = |sum: Rgb| sum / f64::from(samples);
+    (parts.into_iter().map(|(key, part)| (key, over(part))).collect(), over(slack))
+}
+
+/// The parts of some pixels are a film's, light by light and path by path; gives the kinds of paths there are, each with the
+/// number of pixels that have it.
+fn assert_parts_are_the_whole(known: &Known, name: &str) -> BTreeMap<PathKind, usize> {
     const SAMPLES: u32 = 24;
     let tracer = known.tracer();
     let [width, height] = known.compiled.scene.as_ref().unwrap().trace.size;
     let scale = tracer.prepass().scale;
     let mut film = Film::new(Window::whole([width, height]), scale);
     tracer.add_samples(&mut film, 0..SAMPLES, &Control::new()).unwrap();
-    let mut kinds = BTreeSet::new();
+    let mut kinds = BTreeMap::new();
     for index in (0..width * height).step_by(7) {
         let [x, y] = [index % width, index / width];
         let mut apart = Apart::new(scale);
@@ -85,29 +129,49 @@ fn assert_parts_are_the_whole(known: &Known, name: &str) -> BTreeSet<PathKind> {
         let mean = film.mean(x, y);
         assert_eq!((apart.mean(), apart.error()), (mean, film.error(x, y)), "{name} at {x}, {y}");
         assert_eq!((apart.alpha(), apart.samples()), (film.alpha(x, y), SAMPLES), "{name} at {x}, {y}");
+        assert_eq!(apart.clipped(), 0, "{name} at {x}, {y}");
+        let (raw, slack) = raw_parts(&tracer, [x, y], SAMPLES, scale);
+        let parts: BTreeMap<_, _> =
+            apart.parts().map(|(source, kind, part)| ((source, kind), part)).collect();
+        assert!(parts.keys().eq(raw.keys()), "{name} at {x}, {y}: {parts:?} in place of {raw:?}");
+        for ((key, part), raw) in parts.iter().zip(raw.values()) {
+            let close = (*part - raw).abs().max_element() <= 1e-12 * raw.abs().max_element();
+            assert!(close, "{name} at {x}, {y}, {key:?}: {part} in place of {raw}");
+        }
         let by_light: Rgb = apart.by_light().iter().map(|(_, part)| *part).sum();
         let by_kind: Rgb = apart.by_kind().iter().map(|(_, part)| *part).sum();
-        let parts: Rgb = apart.parts().map(|(.., part)| part).sum();
-        for sum in [by_light, by_kind, parts] {
-            // The sums are exact; only making floats of them rounds.
-            let close = (sum - mean).abs().max_element() <= 1e-12 * (1.0 + mean.max_element());
-            assert!(close, "{name} at {x}, {y}: {sum} in place of {mean}");
+        for sum in [by_light, by_kind, parts.values().sum()] {
+            let close = (sum - mean).abs().cmple(slack).all();
+            assert!(close, "{name} at {x}, {y}: {sum} in place of {mean}, which is not within {slack}");
         }
-        kinds.extend(apart.by_kind().iter().map(|(kind, _)| *kind));
+        for (kind, _) in apart.by_kind() {
+            *kinds.entry(kind).or_default() += 1;
+        }
     }
     kinds
 }
 
 #[test]
 fn the_parts_of_a_pixel_are_the_whole() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases/pictures");
-    for entry in std::fs::read_dir(&folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_some_and(|extension| extension == "rt") {
-            let text = std::fs::read_to_string(&path).unwrap();
-            let known = Known::with(&Folder(folder.clone()), &text, [20, 15]);
-            assert_parts_are_the_whole(&known, &path.display().to_string());
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut caustics = BTreeSet::new();
+    for folder in ["tests/cases/pictures", "examples", "examples/garden", "examples/report"] {
+        let folder = root.join(folder);
+        for entry in std::fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_some_and(|extension| extension == "rt") {
+                let text = std::fs::read_to_string(&path).unwrap();
+                let name = path.file_name().unwrap().to_str().unwrap();
+                let known = Known::with(&Folder(folder.clone()), &text, [20, 15]);
+                if assert_parts_are_the_whole(&known, name).contains_key(&PathKind::Caustic) {
+                    caustics.insert(name.to_string());
+                }
+            }
         }
+    }
+    // Light that photons found the way of is among it.
+    for name in ["marbles.rt", "three-balls.rt", "newton.rt"] {
+        assert!(caustics.contains(name), "{caustics:?}");
     }
     let kinds = assert_parts_are_the_whole(&Known::of(ALL_SORTS), "all sorts");
     let wanted = [
@@ -119,7 +183,88 @@ fn the_parts_of_a_pixel_are_the_whole() {
         PathKind::Indirect(1),
         PathKind::Indirect(2),
     ];
-    assert!(wanted.iter().all(|kind| kinds.contains(kind)), "{kinds:?}");
+    assert!(wanted.iter().all(|kind| kinds.get(kind).is_some_and(|pixels| *pixels >= 3)), "{kinds:?}");
+}
+
+#[test]
+fn parts_of_what_is_too_bright_are_cut_alike() {
+    const SAMPLES: u32 = 16;
+    let text = "\
+camera { from: (0, 0, 1.5)m, look: (0, 0, 0)m, fov: 35deg }
+box { size: (4, 4, 4)m }
+light { at: (0, 1, 0)m, power: 100W }
+render { filter: box }
+";
+    let known = Known::of(text);
+    let tracer = known.tracer();
+    let taken_apart = |scale: f64| {
+        let mut apart = Apart::new(scale);
+        tracer.take_apart([16, 12], 0..SAMPLES, &mut apart);
+        apart
+    };
+    let whole = taken_apart(1e12);
+    assert_eq!((whole.clipped(), whole.parts().count()), (0, 8));
+    // With room for a quarter of it.
+    let most = 0.25 * whole.mean().min_element();
+    let cut = taken_apart(exp2(42.0) / most);
+    assert_eq!((cut.clipped(), cut.mean()), (SAMPLES, Rgb::splat(most)));
+    let mut wanted: BTreeMap<PathKind, Rgb> = BTreeMap::new();
+    for sample in 0..SAMPLES {
+        let mut told = Told::default();
+        let kept = most / tracer.sample(16, 12, sample, &mut told).radiance;
+        for part in &told.contributions {
+            *wanted.entry(part.kind()).or_default() += kept * part.radiance / f64::from(SAMPLES);
+        }
+    }
+    for (kind, part) in cut.by_kind() {
+        let close = (part - wanted[&kind]).abs().max_element() < 1e-12 * most;
+        assert!(close, "{kind:?}: {part} in place of {}", wanted[&kind]);
+    }
+}
+
+#[test]
+fn what_a_pixel_shows_is_all_of_it() {
+    let text = "\
+camera { from: (0, 0, 9)m, look: (0, 0, 0)m, width: 6m }
+for x in range(6) { for y in range(6) { sphere { at: (x - 2.5, y - 2.5, 0)m, radius: 40cm } } }
+render { filter: FILTER }
+";
+    for filter in ["box", "tent", "gaussian", "mitchell"] {
+        let known = Known::with(&Folder(".".into()), &text.replace("FILTER", filter), [1, 1]);
+        let why = known.why([0, 0], 1024);
+        assert_eq!((why.shows.len(), why.others.count), (8, 28), "{filter}");
+        let shown: f64 = why.shows.iter().map(|shown| shown.share).sum();
+        assert!(why.shows.iter().all(|shown| shown.share > 0.0) && why.others.share > shown, "{filter}");
+        assert!((shown + why.others.share + why.background - 1.0).abs() < 1e-12, "{filter}: {why:?}");
+        if filter == "box" {
+            let open = 1.0 - 36.0 * PI * 0.4 * 0.4 / 36.0;
+            assert!((why.background - open).abs() < 0.01, "{}", why.background);
+        }
+    }
+}
+
+#[test]
+fn shares_of_a_pixel_are_shares_with_any_filter() {
+    // An upright edge that crosses the columns of pixels at many places, before the sky.
+    let text = "\
+camera { from: (0, 0, 5)m, look: (0, 0, 0)m, width: 3.2m }
+box { at: (-1, 0, 0)m, size: (2, 10, 2)m, place: turn(z: 3deg) }
+render { filter: mitchell, background: transparent }
+";
+    let known = Known::with(&Folder(".".into()), text, [32, 24]);
+    let tracer = known.tracer();
+    for samples in [1, 2, 16, 64] {
+        let hits = tracer.first_hits(Window::whole([32, 24]), samples, &Control::new()).unwrap();
+        for (x, y) in (0..24).flat_map(|y| (0..32).map(move |x| (x, y))) {
+            let pixel = hits.pixel(x, y);
+            let shown: f64 = pixel.shown().iter().map(|(_, share)| *share).sum();
+            assert!((0.0..=1.0).contains(&shown), "{shown} at {x}, {y}");
+            assert!((shown + pixel.background() - 1.0).abs() < 1e-12, "{shown} at {x}, {y}");
+            // The face of the box is 4 m away, its side no farther than 6.
+            assert_eq!(pixel.depth().is_some(), shown > 0.0);
+            assert!(pixel.depth().is_none_or(|depth| (3.999..6.0).contains(&depth)), "{:?}", pixel.depth());
+        }
+    }
 }
 
 #[test]

@@ -12,13 +12,15 @@ use rt_lang::render::apart::Apart;
 use rt_lang::report::{self, Style};
 use rt_lang::scene::{Scene, Target};
 use rt_lang::source::Sources;
-use rt_lang::why::{LightShare, PathShare, Shown, ThingAt, Used, Why};
+use rt_lang::why::{LightShare, PathShare, SamplesBy, Shown, ThingAt, Used, Why};
 use std::fmt::Write;
 
-/// Paths to watch where the scene asks for a level of noise.
+/// Paths to watch where the scene asks for a level of noise: what that takes is known once the whole picture is made.
 const ENOUGH: u32 = 256;
 /// The most things that are pointed at.
 const MOST_POINTED_AT: usize = 3;
+/// The least share that is told of: less is 0.0%.
+const LEAST_SHARE: f64 = 0.0005;
 /// The most lights, and kinds of paths, that are listed.
 const MOST_ROWS: usize = 12;
 
@@ -29,14 +31,16 @@ pub fn run(arguments: &Arguments, terminal: Terminal) -> Result<Exit, Problem> {
     let Some(from) = loaded.compiled.provenance(&loaded.sources) else { return Ok(Exit::Diagnostics) };
     let pixel = arguments.pixel;
     refuse_outside(pixel, from.scene)?;
-    let samples = match from.scene.trace.target {
-        Target::Samples(samples) => samples,
-        Target::Noise(_) => ENOUGH,
+    let (samples, by) = match from.scene.trace.target {
+        Target::Samples(samples) if arguments.samples.is_some() => (samples, SamplesBy::Command),
+        Target::Samples(samples) if from.marks.samples.is_some() => (samples, SamplesBy::Scene),
+        Target::Samples(samples) => (samples, SamplesBy::Default),
+        Target::Noise(_) => (ENOUGH, SamplesBy::Noise),
     };
     let tracer = Tracer::new(from.scene);
     let mut apart = Apart::new(tracer.prepass().scale);
     tracer.take_apart(pixel, 0..samples, &mut apart);
-    let why = Why::new(pixel, &apart, from);
+    let why = Why::new(pixel, &apart, by, from);
     let text = if arguments.json {
         let object = serde_json::to_string(&why);
         object.unwrap_or_else(|_| unreachable!("texts and finite numbers are always JSON")) + "\n"
@@ -69,27 +73,60 @@ fn refuse_outside([x, y]: [u32; 2], scene: &Scene) -> Result<(), Problem> {
 
 /// As a person reads it.
 fn words(why: &Why, scene: &str, sources: &Sources, style: Style) -> String {
-    let [x, y] = why.pixel;
-    let paths = if why.samples == 1 { "path" } else { "paths" };
-    let mut text = format!("pixel {x},{y} of {scene}, from {} {paths}\n\n", why.samples);
+    let mut text = head(why, scene);
     for shown in why.shows.iter().take(MOST_POINTED_AT) {
         text += &pointed_at(shown, sources, style);
         text.push('\n');
     }
-    let rest: f64 = 1.0 - why.shows.iter().take(MOST_POINTED_AT).map(|shown| shown.share).sum::<f64>();
-    if why.shows.is_empty() {
-        text += "It shows nothing but the background.\n\n";
-    } else if rest > 0.005 {
-        let more = if why.shows.len() > MOST_POINTED_AT {
-            "other things and the background"
-        } else {
-            "the background"
-        };
-        let _ = writeln!(text, "{} of it shows {more}.\n", percent(rest));
-    }
+    text += &rest(why);
     text += &values(why);
     text += &table("light", &why.lights, |light| (light_name(light), light.share, light.radiance));
     text += &table("path", &why.paths, |path| (path_name(path), path.share, path.radiance));
+    text
+}
+
+/// Which pixel this is, and from how many paths it is known, with what chose how many.
+fn head(why: &Why, scene: &str) -> String {
+    let [x, y] = why.pixel;
+    let samples = why.samples;
+    let paths = if samples == 1 { "path" } else { "paths" };
+    let by = match why.samples_by {
+        SamplesBy::Command => ", as `--samples` says",
+        SamplesBy::Scene => ", the scene's `samples`",
+        SamplesBy::Default => ", the default `samples`",
+        SamplesBy::Noise => {
+            "\nThe scene asks for a level of noise, so a picture of it may have more or fewer. `rtc build` says how many it took:\n\
+             `--samples` with that number gives the very pixel of the picture."
+        }
+        SamplesBy::Picture => ", which the picture has by now",
+    };
+    let mut text = format!("pixel {x},{y} of {scene}, from {samples} {paths}{by}\n");
+    if why.clipped > 0 {
+        let _ =
+            writeln!(text, "{} of them are brighter than a picture has room for, and are cut.", why.clipped);
+    }
+    text.push('\n');
+    text
+}
+
+/// What the pixel shows besides the things that are pointed at.
+fn rest(why: &Why) -> String {
+    if why.shows.is_empty() {
+        return "It shows nothing but the background.\n\n".into();
+    }
+    let listed = why.shows.iter().skip(MOST_POINTED_AT);
+    let others = listed.len() + why.others.count;
+    let share = listed.map(|shown| shown.share).sum::<f64>() + why.others.share;
+    let things = if others == 1 { "another thing".into() } else { format!("{others} other things") };
+    let mut text = String::new();
+    for (share, what) in [(share, things), (why.background, "the background".into())] {
+        if share >= LEAST_SHARE {
+            let _ = writeln!(text, "{} of it shows {what}.", percent(share));
+        }
+    }
+    if !text.is_empty() {
+        text.push('\n');
+    }
     text
 }
 
@@ -98,7 +135,7 @@ fn pointed_at(shown: &Shown, sources: &Sources, style: Style) -> String {
     let which = thing.number.map_or(String::new(), |number| {
         format!(", number {} of the {} that are made there", number.this, number.of)
     });
-    let much = if *share > 0.9995 { "it".into() } else { format!("{} of it", percent(*share)) };
+    let much = if *share > 1.0 - LEAST_SHARE { "it".into() } else { format!("{} of it", percent(*share)) };
     let message = format!("{much} shows a `{}`{which}", thing.kind);
     let made_of = material.as_ref().map_or(String::new(), |material| {
         let named = material.name.map_or(String::new(), |name| format!("`{name}`, a "));
@@ -118,7 +155,7 @@ fn values(why: &Why) -> String {
         // Writing to a string does not fail.
         let _ = writeln!(text, "{head:<11} {words}");
     };
-    row("radiance", format!("{} W/m² (red, green, blue)", triple(why.radiance)));
+    row("radiance", format!("{} W/(m²·sr) (red, green, blue)", triple(why.radiance)));
     if let Some(error) = why.error {
         let luminance = rt_lang::color::luminance(why.radiance.into());
         let share =

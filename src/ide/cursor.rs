@@ -117,7 +117,18 @@ impl<'t> Cursor<'t> {
     /// Finds the open brackets, and the entry.
     fn place(&mut self, before: &[Piece]) {
         let mut open: Vec<usize> = vec![];
+        let mut begins = 0;
         for (index, (lexeme, range)) in before.iter().enumerate() {
+            let at_margin = range.start == 0 || self.text.as_bytes()[range.start - 1] == b'\n';
+            if at_margin && matches!(lexeme, Lexeme::Word | Lexeme::Prefix) {
+                // What begins at the margin is no value.
+                let body = open.iter().rposition(|at| self.is(&before[*at], "{"));
+                let kept = body.map_or(0, |body| body + 1);
+                if kept < open.len() {
+                    open.truncate(kept);
+                    begins = index;
+                }
+            }
             if *lexeme != Lexeme::Mark {
                 continue;
             }
@@ -139,7 +150,7 @@ impl<'t> Cursor<'t> {
         self.opened_by = open.last().and_then(|index| Some(before.get(index.checked_sub(1)?)?.1.clone()));
         // An entry lies in a body: brackets of values are part of it.
         let body = open.iter().rposition(|index| self.is(&before[*index], "{"));
-        let first = body.map_or(0, |body| open[body] + 1);
+        let first = body.map_or(0, |body| open[body] + 1).max(begins);
         self.entry = self.entry_of(&before[first..]).iter().map(|(_, range)| range.clone()).collect();
     }
 
@@ -195,8 +206,8 @@ impl<'t> Cursor<'t> {
         let last_text = last.map_or("", |(_, range)| &self.text[range.clone()]);
         let touches = last.is_some_and(|(_, range)| range.end == self.word.start);
         let field = (self.piece(1) == ":").then(|| self.piece(0).to_string());
-        if touches && last.is_some_and(|(lexeme, _)| *lexeme == Lexeme::Number) || touches && last_text == ")"
-        {
+        let is_number = last.is_some_and(|(lexeme, _)| *lexeme == Lexeme::Number);
+        if touches && (is_number || last_text == ")") {
             return Spot::Unit(field);
         }
         if last_text == "." {
@@ -311,6 +322,7 @@ impl<'t> Cursor<'t> {
 
     /// Where the text goes on that does not belong to what is open at the cursor; none where all of that is closed.
     fn resumes(&self) -> Option<usize> {
+        let mut margin = None;
         let column = |at: usize| at - self.text[..at].rfind('\n').map_or(0, |line| line + 1);
         let mut open = self.open.clone();
         let mut line_begins = false;
@@ -318,9 +330,9 @@ impl<'t> Cursor<'t> {
             if open.is_empty() {
                 return None;
             }
-            // What begins at the margin is not inside of anything.
+            // What begins at the margin is not inside of anything, if what is around it is not closed either.
             if line_begins && lexeme == Lexeme::Word && column(range.start) == 0 {
-                return Some(range.start);
+                margin = margin.or(Some(range.start));
             }
             line_begins = lexeme == Lexeme::Line;
             match (lexeme, self.text.as_bytes()[range.start]) {
@@ -329,7 +341,7 @@ impl<'t> Cursor<'t> {
                 _ => {}
             }
         }
-        (!open.is_empty()).then_some(self.text.len())
+        (!open.is_empty()).then_some(margin.unwrap_or(self.text.len()))
     }
 }
 
@@ -382,6 +394,8 @@ mod tests {
             ("@|", Spot::Prefix),
             ("@off |", Spot::Entry),
             ("@allow(|", Spot::Warning),
+            ("@allow(\nparam a: |", Spot::Type),
+            ("sphere { at: (0,\nmaterial a = |", value("material")),
             ("camera { look: a.|", Spot::Member(16)),
         ] {
             assert_eq!(spot(text).0, wanted, "{text}");

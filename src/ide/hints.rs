@@ -25,9 +25,8 @@ pub(super) fn hints(analysis: &Analysis, range: Range<usize>) -> Vec<Hint> {
             }
         }
         Piece::Construct(construct) => {
-            if let Some((seen, place)) = &analysis.camera
-                && construct.span == *place
-            {
+            let cameras = analysis.study.cameras.iter();
+            if let Some((seen, _)) = cameras.into_iter().find(|(_, place)| *place == construct.span) {
                 found.extend(camera_hints(analysis, construct, seen));
             }
         }
@@ -76,21 +75,24 @@ fn camera_hints(analysis: &Analysis, construct: &Construct, seen: &Camera) -> Ve
     hint(of_lens(lens::FOCAL.index(lens::KIND)), angle, "the angle of view across the width");
     let focal = 0.5 * FULL_FRAME / seen.half_extent.x;
     if seen.lens_radius > 0.0 {
-        let text = format!(
-            " f/{:.1}, focal {}",
-            focal / (2.0 * seen.lens_radius),
-            say::quantity(focal, units::LENGTH)
-        );
+        let text = format!(" f/{:.1}, focal {}", focal / (2.0 * seen.lens_radius), millimetres(focal));
         let about = "the f-number and the focal length that would do the same before a sensor of 36mm";
         hint(of_lens(lens::APERTURE.index(lens::KIND)), text, about);
-        let diameter = format!(" opening {}", say::quantity(2.0 * seen.lens_radius, units::LENGTH));
+        let diameter = format!(" opening {}", millimetres(2.0 * seen.lens_radius));
         hint(of_lens(lens::STOP.index(lens::KIND)), diameter, "the diameter of the opening");
     }
     let focus = of_lens(lens::FOCUS.index(lens::KIND)).filter(|_| seen.lens_radius > 0.0);
+    // A distance that is computed is said as such.
+    let focus = focus.filter(|place| hover::value(analysis, *place).is_none());
     let distance = format!(" at {}", say::quantity(seen.focus, units::LENGTH));
     hint(focus, distance, "the distance along the view that is sharp");
-    let as_focal = format!(" as {}", say::quantity(focal, units::LENGTH));
+    let as_focal = format!(" as {}", millimetres(focal));
     let fov_place = place(camera::KIND, camera::FOV.index(camera::KIND));
     hint(fov_place, as_focal, "the focal length that gives this angle of view on a sensor of 36mm");
     found
+}
+
+/// A length as photographers say it.
+fn millimetres(x: f64) -> String {
+    format!("{}mm", say::number((x * 1e4).round() / 10.0))
 }

@@ -119,7 +119,9 @@ fn of_statement(analysis: &Analysis, statement: &Statement, ty: &Type) -> Hover 
         ),
         None => (None, None),
     };
-    Hover { span: statement.span, code, value: shown, doc, colour }
+    // What is written out is not said again.
+    let value = shown.filter(|value| !code.split([' ', '\n']).any(|word| word == value));
+    Hover { span: statement.span, code, value, doc, colour }
 }
 
 /// The params of a part, a line each.

@@ -2,8 +2,8 @@
 //!
 //! An [`Analysis`] is what one text means together with all it imports, and never changes: an edit makes another one, by
 //! [`crate::analyse`], which runs the stages that [`crate::compile`] runs. Most questions are about the text that was analysed; what they
-//! point at may lie in another file. Questions that are asked while a statement is being typed, [`complete`] and
-//! [`signatures`], take the text itself. [`references`] and [`rename`] look through several analyses, since who
+//! point at may lie in another file. Questions that are asked while a statement is being typed, [`complete()`] and
+//! [`signatures`], take the text itself, and so does [`outline`], which needs no analysis. [`references`] and [`rename()`] look through several analyses, since who
 //! uses a file is not known in it.
 //!
 //! No text, offset or range makes a question panic: what lies outside a text is moved to its end.
@@ -36,6 +36,7 @@ pub use complete::complete;
 pub use rename::{references, rename};
 pub use say::{default, range};
 pub use signature::signatures;
+pub use symbols::outline;
 
 use crate::check::Notes;
 use crate::diagnostic::Diagnostic;
@@ -61,8 +62,6 @@ pub struct Analysis {
     pub diagnostics: Vec<Diagnostic>,
     /// One line for each default that was chosen for the user.
     pub notes: Vec<String>,
-    /// The camera that takes the picture, and where its block stands, where somebody wrote it and nothing is wrong.
-    camera: Option<(Camera, Span)>,
     study: Study,
 }
 
@@ -75,6 +74,8 @@ pub struct Study {
     pub notes: Notes,
     /// What expressions come to.
     pub values: Values,
+    /// The cameras that somebody wrote, and where their blocks stand.
+    pub cameras: Vec<(Camera, Span)>,
 }
 
 impl Analysis {
@@ -84,10 +85,9 @@ impl Analysis {
         main: SourceId,
         diagnostics: Vec<Diagnostic>,
         notes: Vec<String>,
-        camera: Option<(Camera, Span)>,
         study: Study,
     ) -> Analysis {
-        Analysis { sources, main, diagnostics, notes, camera, study }
+        Analysis { sources, main, diagnostics, notes, study }
     }
 
     /// The text that was analysed.

@@ -2,10 +2,12 @@
 
 use super::walk::{name_of, whole};
 use super::{Analysis, Symbol, SymbolKind, say};
-use crate::check::{Making, Meaning, Type};
+use crate::check::{Making, Meaning, Notes, Type};
 use crate::schema::Category;
+use crate::source::{Source, Sources};
 use crate::span::Span;
 use crate::syntax::ast::{Body, Construct, Entry, Expr, ExprKind, Keyword, Statement, StatementKind};
+use crate::syntax::{self, Limits};
 
 /// The most things without a name that are listed one by one where they are all alike.
 const MOST_ROWS: usize = 1000;
@@ -13,11 +15,24 @@ const MOST_ROWS: usize = 1000;
 /// What the text declares, as a tree.
 pub(super) fn symbols(analysis: &Analysis) -> Vec<Symbol> {
     let file = analysis.study.files.iter().find(|file| file.source == analysis.main);
-    file.map(|file| Outline { analysis }.body(&file.tree.body)).unwrap_or_default()
+    let outline = Outline { sources: &analysis.sources, notes: &analysis.study.notes };
+    file.map(|file| outline.body(&file.tree.body)).unwrap_or_default()
+}
+
+/// What a text declares by its form alone, without looking at what it imports or what names mean: the symbols of its
+/// [`Analysis`], though of some it is only guessed what they are. It is soon known, for files that nobody has open.
+/// The places are in the first source, whatever the text is.
+pub fn outline(source: &Source) -> Vec<Symbol> {
+    let mut sources = Sources::default();
+    let id = sources.add(source.clone());
+    let (tree, _) = syntax::parse_rows(id, &source.text, Limits::default());
+    Outline { sources: &sources, notes: &Notes::default() }.body(&tree.body)
 }
 
 struct Outline<'a> {
-    analysis: &'a Analysis,
+    sources: &'a Sources,
+    /// What names mean, as far as it is known.
+    notes: &'a Notes,
 }
 
 impl Outline<'_> {
@@ -27,7 +42,7 @@ impl Outline<'_> {
             match entry {
                 Entry::Statement(statement) => self.statement(statement, &mut found),
                 Entry::Rows(rows) => {
-                    let text = &self.analysis.sources.get(body.span.source).text;
+                    let text = &self.sources.get(body.span.source).text;
                     for row in 0..rows.len().min(MOST_ROWS) {
                         self.statement(&rows.statement(row, text), &mut found);
                     }
@@ -52,10 +67,13 @@ impl Outline<'_> {
             StatementKind::Definition { keyword, name, value } => {
                 let mut children = vec![];
                 self.within(value, &mut children);
-                let made = self.analysis.study.notes.declared(name.span);
+                let made = self.notes.declared(name.span);
                 let kind = match (keyword, made) {
                     (Keyword::Material, _) => SymbolKind::Material,
                     (Keyword::Let, Some(Type::Made(_))) => SymbolKind::Prototype,
+                    (Keyword::Let, None) if matches!(value.kind, ExprKind::Construct(_)) => {
+                        SymbolKind::Prototype
+                    }
                     (Keyword::Let, _) => SymbolKind::Value,
                 };
                 (kind, children)
@@ -86,15 +104,15 @@ impl Outline<'_> {
             (None, StatementKind::Thing { construct, .. }) => {
                 let path = &construct.kind;
                 let span = path.rest.last().map_or(path.first.span, |last| path.first.span.to(last.span));
-                (self.analysis.sources.text(span).to_string(), span)
+                (self.sources.text(span).to_string(), span)
             }
-            (None, _) => (self.analysis.sources.head(statement.span).to_string(), statement.span),
+            (None, _) => (self.sources.head(statement.span).to_string(), statement.span),
         }
     }
 
     fn detail(&self, statement: &Statement) -> String {
-        let declared = |span: Span| self.analysis.study.notes.declared(span);
-        let text = |span: Span| self.analysis.sources.first_line(span).to_string();
+        let declared = |span: Span| self.notes.declared(span);
+        let text = |span: Span| self.sources.first_line(span).to_string();
         match &statement.kind {
             StatementKind::Thing { name: Some(_), construct } => construct.kind.first.text.to_string(),
             StatementKind::Definition { name, .. } => match declared(name.span) {
@@ -114,7 +132,7 @@ impl Outline<'_> {
 
     fn kind_of(&self, construct: &Construct) -> SymbolKind {
         let last = construct.kind.rest.last().unwrap_or(&construct.kind.first);
-        let notes = &self.analysis.study.notes;
+        let notes = self.notes;
         let category = match notes.meaning(last.span) {
             Some(Meaning::Kind(kind)) => Some(kind.get().category),
             Some(Meaning::Declared(place)) => match notes.declared(place) {

@@ -44,7 +44,7 @@ pub(super) fn typing<T: Send + Default>(
     stack::deep(move || {
         let (program, _, notes) = check::study(files, &sources, &imported, &[]);
         let study = Study { files: imported.files, notes, ..Study::default() };
-        let analysis = Analysis::new(sources, main, vec![], vec![], None, study);
+        let analysis = Analysis::new(sources, main, vec![], vec![], study);
         if stop() { T::default() } else { ask(&Typing { cursor, analysis, program }) }
     })
 }

@@ -1,9 +1,28 @@
-//! Where the materials of surfaces were written.
+//! Where parts of a scene were written.
 
 use crate::eval::{Given, Value};
-use crate::scene::PrimitiveId;
+use crate::scene::{OriginId, PrimitiveId};
 use crate::span::Span;
 use std::collections::BTreeMap;
+
+/// Where those parts of a scene came from that are no primitives. What was chosen for the user has no place.
+#[derive(Clone, Debug, Default)]
+pub struct Marks {
+    /// The camera's block.
+    pub camera: Option<Span>,
+    /// Where it stands: its `from`.
+    pub from: Option<Span>,
+    /// What it looks at: its `look`.
+    pub look: Option<Span>,
+    /// The lens, or what it is focused on.
+    pub focus: Option<Span>,
+    /// How many samples a pixel has.
+    pub samples: Option<Span>,
+    /// By the index of a light in the scene.
+    pub lights: Vec<Option<OriginId>>,
+    /// What primitives are made of.
+    pub materials: MaterialMarks,
+}
 
 /// Where the materials of primitives were written. Neighbours mostly share one, and are kept as one run.
 #[derive(Clone, Debug, Default)]
@@ -29,6 +48,11 @@ impl MaterialMarks {
         if let (Some(span), Some(name)) = (span, made.and_then(|made| made.known_as())) {
             self.names.entry(span).or_insert_with(|| name.to_string());
         }
+    }
+
+    /// Runs of primitives whose materials were written at one place, by the first of each, with the place.
+    pub fn runs(&self) -> impl Iterator<Item = (PrimitiveId, Option<Span>)> {
+        self.runs.iter().map(|(first, span)| (PrimitiveId(*first), *span))
     }
 
     /// Where the material of a primitive was written, and the name that it, or what it was made from, was given there; none

@@ -26,7 +26,7 @@ use crate::schema::{self, Category, DEFAULT_SAMPLES, KindId, light, render, sun}
 use crate::source::Sources;
 use crate::span::{SourceId, Span};
 pub use decoded::Decoded;
-pub use marks::MaterialMarks;
+pub use marks::{Marks, MaterialMarks};
 use material::Materials;
 pub use mesh::Meshes;
 use std::sync::Arc;
@@ -75,23 +75,6 @@ pub struct Lowered {
     pub others: Vec<(Camera, Marks)>,
     /// Where its pictures and meshes were read.
     pub contents: Contents,
-}
-
-/// Where those parts of a scene came from that are no primitives. What was chosen for the user has no place.
-#[derive(Clone, Debug, Default)]
-pub struct Marks {
-    /// The camera's block.
-    pub camera: Option<Span>,
-    /// Where it stands: its `from`.
-    pub from: Option<Span>,
-    /// What it looks at: its `look`.
-    pub look: Option<Span>,
-    /// The lens, or what it is focused on.
-    pub focus: Option<Span>,
-    /// By the index of a light in the scene.
-    pub lights: Vec<Option<OriginId>>,
-    /// What primitives are made of.
-    pub materials: MaterialMarks,
 }
 
 /// Where settings stand that only a finished picture can judge; none where the source does not give them.
@@ -419,12 +402,17 @@ impl<'a> Lowering<'a> {
     fn trace(&mut self, blocks: &Blocks, size: [u32; 2]) -> (Trace, Tonemap) {
         let plain = plain(render::KIND);
         let made = blocks.render.map_or(plain.fields(), |thing| thing.made);
-        let samples = made.given(render::SAMPLES).map(|(samples, _)| samples as u32);
+        let samples = made.given(render::SAMPLES);
         let noise = made.given(render::NOISE);
+        self.out.marks.samples = samples.map(|(_, span)| span);
         let own = self.overrides.noise.is_none().then_some(noise).flatten();
         self.out.places.noise = own.map(|(_, span)| span);
         self.out.places.bounces = made.given(render::BOUNCES).map(|(_, span)| span);
-        let target = match (self.overrides.samples.or(samples), self.overrides.noise, own) {
+        let target = match (
+            self.overrides.samples.or(samples.map(|(n, _)| n as u32)),
+            self.overrides.noise,
+            own,
+        ) {
             (_, Some(noise), _) | (None, None, Some((noise, _))) => Target::Noise(noise),
             (Some(samples), None, _) => Target::Samples(samples),
             (None, None, None) if self.overrides.limited => Target::Samples(u32::MAX),

@@ -11,25 +11,32 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// A pixel taken apart. The parts are sums in the fixed point of the film, which add up to the film's exactly.
+/// A pixel taken apart. Its mean is a film's to the bit. The parts are what paths say that they bring, and nothing else: they
+/// add up to the mean but for rounding, since paths add in single precision and a film in its fixed point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Apart {
     scale: f64,
     pixel: Pixel,
     firsts: Firsts,
-    parts: BTreeMap<(Source, PathKind), [i64; 3]>,
+    clipped: u32,
+    parts: BTreeMap<(Source, PathKind), Rgb>,
 }
 
 impl Apart {
     /// Nothing yet, to be counted in the units of a film's scale.
     pub fn new(scale: f64) -> Apart {
         let firsts = Firsts::default();
-        Apart { scale, pixel: Pixel::default(), firsts, parts: BTreeMap::new() }
+        Apart { scale, pixel: Pixel::default(), firsts, clipped: 0, parts: BTreeMap::new() }
     }
 
     /// How many samples it holds.
     pub fn samples(&self) -> u32 {
         self.pixel.samples()
+    }
+
+    /// How many of them are brighter than the scale has room for. A film cuts them; so are their parts, all alike.
+    pub fn clipped(&self) -> u32 {
+        self.clipped
     }
 
     /// As [`Film::mean`](super::Film::mean).
@@ -52,9 +59,9 @@ impl Apart {
         &self.firsts
     }
 
-    /// What each light adds to the mean by each kind of path. Only those that add anything.
+    /// What each light adds to the mean by each kind of path. Only those that bring anything.
     pub fn parts(&self) -> impl Iterator<Item = (Source, PathKind, Rgb)> {
-        self.parts.iter().map(|((source, kind), sum)| (*source, *kind, self.over_samples(sum)))
+        self.parts.iter().map(|((source, kind), sum)| (*source, *kind, self.over_samples(*sum)))
     }
 
     /// What each light adds to the mean, the most first.
@@ -68,18 +75,17 @@ impl Apart {
     }
 
     fn gathered<K: Ord + Copy>(&self, key: impl Fn(Source, PathKind) -> K) -> Vec<(K, Rgb)> {
-        let mut sums: BTreeMap<K, [i64; 3]> = BTreeMap::new();
+        let mut sums: BTreeMap<K, Rgb> = BTreeMap::new();
         for ((source, kind), part) in &self.parts {
-            let sum = sums.entry(key(*source, *kind)).or_default();
-            sum.iter_mut().zip(part).for_each(|(sum, v)| *sum += v);
+            *sums.entry(key(*source, *kind)).or_default() += *part;
         }
-        let mut all: Vec<_> = sums.iter().map(|(key, sum)| (*key, self.over_samples(sum))).collect();
+        let mut all: Vec<_> = sums.into_iter().map(|(key, sum)| (key, self.over_samples(sum))).collect();
         all.sort_by(|(a, x), (b, y)| luminance(*y).total_cmp(&luminance(*x)).then(a.cmp(b)));
         all
     }
 
-    fn over_samples(&self, sum: &[i64; 3]) -> Rgb {
-        Rgb::from_array(sum.map(|v| v as f64)) / (self.scale * f64::from(self.samples()))
+    fn over_samples(&self, sum: Rgb) -> Rgb {
+        sum / f64::from(self.samples())
     }
 
     fn add(&mut self, watched: &Watched) {
@@ -87,28 +93,14 @@ impl Apart {
         self.pixel.add(radiance, self.scale);
         self.pixel.cover(open, weight);
         self.firsts.add(weight, watched.first.as_ref());
-        self.add_parts(film::fixed(radiance, self.scale), weight, &watched.contributions);
-    }
-
-    /// Adds what a sample is made of. A path adds in single precision, and one that is too bright for the scale is cut: by so
-    /// much the largest part is mended, that the parts stay the whole.
-    fn add_parts(&mut self, whole: [i64; 3], weight: f64, contributions: &[Contribution]) {
-        let brightness = |part: &Contribution| luminance(part.radiance);
-        let Some(largest) = (0..contributions.len())
-            .max_by(|a, b| brightness(&contributions[*a]).total_cmp(&brightness(&contributions[*b])))
-        else {
-            return;
-        };
-        let mut rest = whole;
-        let mut parts: Vec<[i64; 3]> =
-            contributions.iter().map(|part| film::fixed(weight * part.radiance, self.scale)).collect();
-        for part in &parts {
-            rest.iter_mut().zip(part).for_each(|(rest, v)| *rest -= v);
-        }
-        parts[largest].iter_mut().zip(rest).for_each(|(v, rest)| *v += rest);
-        for (contribution, part) in contributions.iter().zip(parts) {
-            let sum = self.parts.entry((contribution.source, contribution.kind())).or_default();
-            sum.iter_mut().zip(part).for_each(|(sum, v)| *sum += v);
+        let counted = film::counted(radiance, self.scale);
+        self.clipped += u32::from(counted != radiance);
+        let kept = |counted: f64, whole: f64| if counted == whole { 1.0 } else { counted / whole };
+        let kept =
+            Rgb::new(kept(counted.x, radiance.x), kept(counted.y, radiance.y), kept(counted.z, radiance.z));
+        // Lights that are hidden are told of as well.
+        for part in watched.contributions.iter().filter(|part| part.radiance != Rgb::ZERO) {
+            *self.parts.entry((part.source, part.kind())).or_default() += weight * kept * part.radiance;
         }
     }
 }

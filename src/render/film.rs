@@ -184,9 +184,15 @@ fn halves(v: u64) -> [u32; 2] {
     [v as u32, (v >> 32) as u32]
 }
 
+/// A radiance as it counts: cut where it is too large for the scale.
+pub(super) fn counted(radiance: Rgb, scale: f64) -> Rgb {
+    let most = Rgb::splat(MOST_FIXED / scale);
+    radiance.clamp(-most, most)
+}
+
 /// A radiance in units of 1/scale; what is too large is cut.
 #[inline]
-pub(super) fn fixed(radiance: Rgb, scale: f64) -> [i64; 3] {
+fn fixed(radiance: Rgb, scale: f64) -> [i64; 3] {
     let fixed = |v: f64| nearest((v * scale).clamp(-MOST_FIXED, MOST_FIXED));
     [fixed(radiance.x), fixed(radiance.y), fixed(radiance.z)]
 }

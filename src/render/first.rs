@@ -42,8 +42,9 @@ impl First {
     }
 }
 
-/// What the rays of a pixel meet first, summed by the weights that samples have in the pixel. Added up in the order of
-/// samples, it has the same bits for any number of threads and lanes.
+/// What the rays of a pixel meet first, each counting as much as its weight in the pixel, which a filter may make negative,
+/// is large: with signs there were shares beyond 1, and depths where nothing is. Added up in the order of samples, it has the
+/// same bits for any number of threads and lanes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Firsts {
     /// Of all samples, and of those that meet something.
@@ -58,6 +59,7 @@ pub struct Firsts {
 impl Firsts {
     /// Adds a sample of a weight, and what it meets.
     pub(super) fn add(&mut self, weight: f64, first: Option<&First>) {
+        let weight = weight.abs();
         self.weight += weight;
         let Some(first) = first else { return };
         self.met += weight;
@@ -92,8 +94,8 @@ impl Firsts {
         if self.weight > 0.0 { self.color / self.weight } else { Rgb::ZERO }
     }
 
-    /// The surfaces with the shares of the pixel that they cover, the largest first; equal ones by id. A filter with negative
-    /// weights may leave one less than nothing, which is left out.
+    /// The surfaces with the shares of the pixel that they cover, the largest first; equal ones by id. With that of the
+    /// [background](Firsts::background) they add up to 1.
     pub fn shown(&self) -> Vec<(PrimitiveId, f64)> {
         let share = |(id, sum): &(PrimitiveId, f64)| (*id, sum / self.weight);
         let mut shown: Vec<_> = self.shown.iter().map(share).filter(|(_, share)| *share > 0.0).collect();
@@ -101,14 +103,15 @@ impl Firsts {
         shown
     }
 
+    /// The share of the pixel whose rays meet nothing.
+    pub fn background(&self) -> f64 {
+        if self.met < self.weight { (self.weight - self.met) / self.weight } else { 0.0 }
+    }
+
     fn over_met(&self, sum: f64) -> Option<f64> {
-        // Where negative weights cancel the others, there is no mean.
-        (self.met > LEAST_MET * self.weight).then(|| sum / self.met)
+        (self.met > 0.0).then(|| sum / self.met)
     }
 }
-
-/// The least share of a pixel that has to be covered for means over what covers it.
-const LEAST_MET: f64 = 1e-6;
 
 /// What the camera's rays of a window meet first.
 #[derive(Clone, Debug)]

@@ -37,6 +37,8 @@ pub(super) struct Source<'t> {
     pub(super) comments: &'t [Comment],
     /// The deepest tree of an expression.
     pub(super) depth: usize,
+    /// Items that were read before.
+    pub(super) known: Option<&'t super::Remembered>,
 }
 
 /// Whether an entry is a value in angle brackets, as other languages have them, with or without a name before it.

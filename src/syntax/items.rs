@@ -4,6 +4,7 @@ use super::ast::{Entry, Expr, ExprKind};
 use super::build::{Builder, Grammar, Rule, Source};
 use super::cut::Item;
 use super::errors::{self, Sink};
+use super::remembered::Remembered;
 use super::rows::Rows;
 use super::shapes::Shapes;
 use super::{docs, value};
@@ -33,7 +34,10 @@ pub(super) fn items(source: Source, items: &[Item]) -> (Vec<Entry>, Sink) {
             continue;
         }
         close(&mut rows, &mut entries);
-        let (built, slips) = on_enough_stack(source, item, || entries_of(source, item));
+        let (built, slips) = match source.known.filter(|_| item.depth < DEEP) {
+            Some(known) => entries_again(source, item, known),
+            None => on_enough_stack(source, item, || entries_of(source, item)),
+        };
         if plain && slips.is_empty() {
             shapes.learn(&built, start);
         }
@@ -42,6 +46,19 @@ pub(super) fn items(source: Source, items: &[Item]) -> (Vec<Entry>, Sink) {
     }
     close(&mut rows, &mut entries);
     (entries, sink)
+}
+
+/// The entries of an item that may have been read before.
+fn entries_again(source: Source, item: &Item, known: &Remembered) -> (Vec<Entry>, Sink) {
+    if let Some(mut entries) = known.recall(&source, item) {
+        entries.iter_mut().for_each(|entry| document(source, entry));
+        return (entries, Sink::default());
+    }
+    let (entries, slips) = entries_of(source, item);
+    if slips.is_empty() {
+        known.learn(&source, item, &entries);
+    }
+    (entries, slips)
 }
 
 /// Ends a run of rows.

@@ -3,8 +3,8 @@
 //! Parsing never fails: it returns a tree and what was wrong. Top-level items stand alone: `cut` finds
 //! them in one pass, each is then parsed by the grammar in `grammar/rt.pest` and turned into [`ast`] by
 //! `items`, `build`, `statement` and `value`, a large text's items in parallel. `shapes` knows an item that
-//! differs from an earlier one in its literals only, `rows` keeps it as its literals. What is said of slips is in `errors`.
-//! `format` goes the other way.
+//! differs from an earlier one in its literals only, `rows` keeps it as its literals, `remembered` knows one from before
+//! an edit. What is said of slips is in `errors`. `format` goes the other way.
 
 mod angled;
 pub mod ast;
@@ -18,6 +18,7 @@ mod items;
 mod literal;
 mod lookalikes;
 mod places;
+mod remembered;
 mod rows;
 mod shapes;
 mod slips;
@@ -25,6 +26,7 @@ mod statement;
 mod value;
 
 pub use format::{WIDTH, format};
+pub use remembered::Remembered;
 pub use rows::{Rows, Shape};
 
 use crate::diagnostic::Diagnostic;
@@ -99,6 +101,16 @@ pub fn parse(source: SourceId, text: &str) -> (ast::File, Vec<Diagnostic>) {
 
 /// The same, with things that differ from an earlier one in their literals only as [`Rows`].
 pub fn parse_rows(source: SourceId, text: &str, limits: Limits) -> (ast::File, Vec<Diagnostic>) {
+    parse_again(source, text, limits, None)
+}
+
+/// The same of a text of which parts may have been read before.
+pub fn parse_again(
+    source: SourceId,
+    text: &str,
+    limits: Limits,
+    known: Option<&Remembered>,
+) -> (ast::File, Vec<Diagnostic>) {
     let span = Span::new(source, 0, text.len().min(limits.source));
     if text.len() > limits.source {
         let body = ast::Body { entries: vec![], span };
@@ -110,7 +122,10 @@ pub fn parse_rows(source: SourceId, text: &str, limits: Limits) -> (ast::File, V
     let mut cut = cut::cut(source, &read.text, limits.depth);
     read.skip(&mut cut);
     sink.append(cut.sink);
-    let found = build::Source { id: source, text, comments: &cut.comments, depth: limits.depth };
+    // What is long is read in parallel, and seldom edited.
+    let known = known.filter(|_| text.len() < PARALLEL);
+    known.into_iter().for_each(Remembered::begin);
+    let found = build::Source { id: source, text, comments: &cut.comments, depth: limits.depth, known };
     let mut entries = Vec::with_capacity(cut.items.len());
     let mut collect = |(built, slips)| {
         entries.extend::<Vec<ast::Entry>>(built);
@@ -190,7 +205,7 @@ pub fn parse_expression(source: SourceId, text: &str) -> (ast::Expr, Vec<Diagnos
     let mut cut = cut::whole(source, &read.text, depth);
     read.skip(&mut cut);
     sink.append(cut.sink);
-    let found = build::Source { id: source, text, comments: &cut.comments, depth };
+    let found = build::Source { id: source, text, comments: &cut.comments, depth, known: None };
     let (expr, slips) = items::value(found, cut.items.first());
     sink.append(slips);
     (expr, sink.into_sorted(|place| read.whole(place, text)))

@@ -144,7 +144,8 @@ mod tests {
     /// All items together give what each gives by itself.
     fn check(text: &str) {
         let cut = cut(SourceId(0), text, 512);
-        let source = Source { id: SourceId(0), text, comments: &cut.comments, depth: 512 };
+        let comments = &cut.comments;
+        let source = Source { id: SourceId(0), text, comments, depth: 512, known: None };
         let (together, _) = items(source, &cut.items);
         let together = crate::syntax::rows::written_out(together, text);
         let alone: Vec<_> =

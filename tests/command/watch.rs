@@ -122,7 +122,7 @@ fn however_a_file_is_saved_the_picture_follows() {
     fs::write(&scene, "").unwrap();
     std::thread::sleep(Duration::from_millis(60));
     fs::write(&scene, &text[..text.len() / 2]).unwrap();
-    std::thread::sleep(Duration::from_millis(30));
+    std::thread::sleep(Duration::from_millis(300));
     fs::write(&scene, &text).unwrap();
     watching.until_as_built();
     // Aside, then renamed.
@@ -143,6 +143,73 @@ fn however_a_file_is_saved_the_picture_follows() {
     watching.until_as_built();
     let said = watching.said();
     assert!(!said.contains("error"), "a text that was being written was taken for the whole:\n{said}");
+}
+
+#[test]
+fn nothing_that_a_scene_reads_is_taken_half_written() {
+    let desk = desk();
+    let part = |colour: &str| format!("sphere {{ at: (1, 1, 0)m, radius: 20cm }}\nlet paint = {colour}\n");
+    let picture = |level: u8| {
+        let mut file = vec![];
+        let mut encoder = png::Encoder::new(&mut file, 64, 64);
+        encoder.set_color(png::ColorType::Grayscale);
+        encoder.write_header().unwrap().write_image_data(&[level; 64 * 64]).unwrap();
+        file
+    };
+    desk.put("part.rt", part("#ff8800"));
+    desk.put("paint.png", picture(90));
+    let uses = "import \"part.rt\" as extra\nextra {}\n\
+                disk { radius: 3m, at: (0, 0, -2)m, material: diffuse { color: image(\"paint.png\") } }\n";
+    desk.put("scene.rt", format!("{SCENE}{uses}"));
+    let mut watching = Watching::new(&desk);
+    watching.until_as_built();
+    for (name, whole) in [("part.rt", part("#0088ff").into_bytes()), ("paint.png", picture(200))] {
+        for length in [0, whole.len() / 3, whole.len() - 2] {
+            desk.put(name, &whole[..length]);
+            std::thread::sleep(Duration::from_millis(120));
+        }
+        desk.put(name, whole);
+        watching.until_as_built();
+    }
+    let said = watching.said();
+    assert!(!said.contains("error"), "half of a file was taken for the whole:\n{said}");
+    // What stays broken is told.
+    desk.put("paint.png", &picture(200)[..40]);
+    watching.until("paint.png");
+}
+
+#[test]
+fn no_file_that_a_scene_reads_is_written_over() {
+    let desk = desk();
+    let floor = "disk { radius: 3m, at: (0, 0, -2)m, material: diffuse { color: image(\"out.exr\") } }\n";
+    desk.run("build scene.rt -o out.exr --size 8x6 --samples 1").expect(0, &[]);
+    let before = desk.get("out.exr");
+    desk.put("scene.rt", format!("{SCENE}{floor}"));
+    desk.run("build scene.rt -o out.exr --samples 1").expect(2, &["`out.exr` would be replaced"]);
+    let mut watching = Watching::new(&desk);
+    watching.until("`out.exr` would be replaced by the picture");
+    assert_eq!(desk.get("out.exr"), before);
+    desk.put("scene.rt", SCENE);
+    watching.until_as_built();
+}
+
+#[test]
+fn brighter_lamps_are_seen_at_once() {
+    let desk = desk();
+    let mut watching = Watching::new(&desk);
+    watching.until("8 samples in");
+    // What comes from which lamp is known a moment after a picture is done.
+    for power in 20..40 {
+        std::thread::sleep(Duration::from_millis(100));
+        desk.put("scene.rt", SCENE.replace("60W", &format!("{power}W")));
+        watching.until("`lamp.power` changed: re");
+        if watching.said().contains("remixed at once, re-tracing, structure kept") {
+            watching.until_as_built();
+            return;
+        }
+        watching.until("8 samples in");
+    }
+    panic!("nothing was mixed anew");
 }
 
 #[cfg(unix)]

@@ -201,6 +201,153 @@ fn mattes_are_read_by_name() {
 }
 
 #[test]
+fn mattes_are_shares_with_any_filter() {
+    let desk = desk();
+    desk.put("mitchell.rt", POTS.replace("filter: box", "filter: mitchell"));
+    desk.run("build -q mitchell.rt -o pots.exr --aov object,material,depth").expect(0, &[]);
+    for layer in ["CryptoObject", "CryptoMaterial"] {
+        let mattes = mattes(&desk.get("pots.exr"), layer);
+        for pixel in 0..64 * 48 {
+            let shares: Vec<f32> = mattes.values().map(|matte| matte[pixel]).collect();
+            assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)), "{shares:?} at {pixel}");
+            let sum: f32 = shares.iter().sum();
+            assert!(sum <= 1.0 + 1e-6, "{sum} at {pixel}");
+            if pixel >= 64 * 40 {
+                assert!((sum - 1.0).abs() < 1e-6, "{sum} at {pixel}");
+            }
+        }
+    }
+}
+
+/// Two files, each with a `paint` of its own and a nameless material at the same place; a material and another made from it;
+/// and things that only their place tells apart.
+#[test]
+fn each_material_and_each_thing_has_a_matte_of_its_own() {
+    let desk = Desk::new();
+    for (name, color) in [("red", "#ff0000"), ("blue", "#0000ff")] {
+        let text = format!(
+            "material paint = diffuse {{ color: {color} }}\n\
+             sphere ball {{ radius: 40cm, material: paint }}\n\
+             box {{ at: (0, 1, 0)m, size: (50, 50, 50)cm, material: diffuse {{ color: {color} }} }}\n"
+        );
+        desk.put(&format!("{name}.rt"), text);
+    }
+    let scene = "\
+import \"red.rt\" as red
+import \"blue.rt\" as blue
+red one { at: (-1, 0, 0)m }
+blue other { at: (1, 0, 0)m }
+material moss = diffuse { color: #00ff00 }
+sphere green { at: (0, -1, 0)m, radius: 30cm, material: moss }
+sphere pale { at: (1, -1, 0)m, radius: 30cm, material: moss { color: #ddffdd } }
+light lamp { at: (-1, -1, 0)m, radius: 30cm, power: 20W }
+sphere plain { at: (0, 0, 0)m, radius: 30cm }
+let pair = group { for i in range(2) {
+  if i == 0 { sphere s { at: (-0.5, 1.5, 0)m, radius: 20cm } }
+  if i == 1 { sphere s { at: (0.5, 1.5, 0)m, radius: 20cm } }
+} }
+pair {}
+for k in [0, 1] { sphere twin { at: (k, 1.8, 0)m, radius: 10cm } }
+camera { from: (0, 0, 6)m, look: (0, 0, 0)m, width: 4m }
+render { size: (80, 80), samples: 4, filter: box }
+";
+    desk.put("scene.rt", scene);
+    desk.run("build -q scene.rt -o a.exr --aov object,material").expect(0, &[]);
+    let materials = mattes(&desk.get("a.exr"), "CryptoMaterial");
+    let names: Vec<&str> = materials.keys().map(String::as_str).collect();
+    assert_eq!(
+        names,
+        [
+            "blue.rt:diffuse:3:55",
+            "blue.rt:paint",
+            "diffuse",
+            "light",
+            "red.rt:diffuse:3:55",
+            "red.rt:paint",
+            "scene.rt:moss:5:17",
+            "scene.rt:moss:7:56",
+        ]
+    );
+    // Each covers what is made of it, and nothing else.
+    let objects = mattes(&desk.get("a.exr"), "CryptoObject");
+    assert_eq!(materials["red.rt:paint"], objects["one.ball"]);
+    assert_eq!(materials["blue.rt:paint"], objects["other.ball"]);
+    assert_eq!(materials["light"], objects["lamp"]);
+    assert_eq!(materials["scene.rt:moss:5:17"], objects["green"]);
+    assert_eq!(materials["scene.rt:moss:7:56"], objects["pale"]);
+    // And so does each thing.
+    let names: Vec<&str> = objects.keys().map(String::as_str).collect();
+    assert_eq!(
+        names,
+        [
+            "for:15:1[k = 0].twin",
+            "for:15:1[k = 1].twin",
+            "green",
+            "lamp",
+            "one.ball",
+            "one.box:3:1",
+            "other.ball",
+            "other.box:3:1",
+            "pale",
+            "plain",
+            "scene.rt:pair:14:1.group:10:12.for:10:20.s:11:15",
+            "scene.rt:pair:14:1.group:10:12.for:10:20.s:12:15",
+        ]
+    );
+    assert!(objects.values().all(|matte| matte.iter().sum::<f32>() > 1.0));
+    // No material can be called as all lamps are.
+    desk.put("light.rt", "material light = diffuse {}\nsphere { radius: 1m, material: light }\n");
+    desk.run("check light.rt").expect(1, &["E0103"]);
+    // What is not in view still tells the others apart.
+    desk.put("view.rt", scene.replace("look: (0, 0, 0)m, width: 4m", "look: (-1, 0, 0)m, width: 1m"));
+    desk.run("build -q view.rt -o b.exr --aov material").expect(0, &[]);
+    let materials = mattes(&desk.get("b.exr"), "CryptoMaterial");
+    let names: Vec<&str> = materials.keys().map(String::as_str).collect();
+    assert_eq!(names, ["red.rt:paint"]);
+}
+
+#[test]
+fn why_says_what_chose_the_number_of_paths() {
+    let desk = desk();
+    desk.put("even.rt", POTS.replace("samples: 16", "noise: 5%"));
+    for (arguments, by, words) in [
+        ("pots.rt 32,24 --samples 4", "command", "from 4 paths, as `--samples` says"),
+        ("pots.rt 32,24", "scene", "from 16 paths, the scene's `samples`"),
+        ("ball.rt 3,3 --size 16x12", "default", "from 64 paths, the default `samples`"),
+        ("even.rt 32,24", "noise", "from 256 paths\nThe scene asks for a level of noise"),
+        ("even.rt 32,24 --samples 1", "command", "from 1 path, as `--samples` says"),
+    ] {
+        let text = printed(&desk, &format!("why {arguments}"));
+        assert!(text.contains(words), "{text}");
+        let why: Value = serde_json::from_str(&printed(&desk, &format!("why {arguments} --json"))).unwrap();
+        assert_eq!(why["samples_by"], by, "{arguments}");
+    }
+}
+
+#[test]
+fn why_tells_of_small_things_together() {
+    let desk = Desk::new();
+    desk.put(
+        "small.rt",
+        "\
+camera { from: (0, 0, 9)m, look: (0, 0, 0)m, width: 6m }
+for x in range(6) { for y in range(6) { sphere { at: (x - 2.5, y - 2.5, 0)m, radius: 40cm } } }
+render { size: (1, 1), samples: 512, filter: box }
+",
+    );
+    let text = printed(&desk, "why small.rt 0,0");
+    assert!(text.contains("of it shows 33 other things.\n"), "{text}");
+    assert!(text.contains("of it shows the background.\n"), "{text}");
+    let why: Value = serde_json::from_str(&printed(&desk, "why small.rt 0,0 --json")).unwrap();
+    let share = |value: &Value| value["share"].as_f64().unwrap();
+    let shown: f64 = why["shows"].as_array().unwrap().iter().map(share).sum();
+    let background = why["background"].as_f64().unwrap();
+    assert_eq!(why["others"]["count"], 28);
+    assert!((shown + share(&why["others"]) + background - 1.0).abs() < 1e-12, "{why}");
+    assert!((0.45..0.55).contains(&background), "{why}");
+}
+
+#[test]
 fn feedback_tells_what_many_paths_did() {
     let desk = Desk::new();
     desk.put(

@@ -4,7 +4,7 @@ use super::{analysed, root};
 use crate::fuzz::texts;
 use proptest::prelude::*;
 use rt_lang::eval::Limits;
-use rt_lang::ide;
+use rt_lang::ide::{self, Symbol};
 use rt_lang::span::Span;
 
 /// Asks everything there is at a byte.
@@ -33,6 +33,7 @@ fn ask(text: &str, at: usize) {
         sound(symbol.span);
         assert!(symbol.span.contains(symbol.select), "{text}");
     });
+    assert_eq!(places(&ide::outline(analysis.source())), places(&analysis.symbols()), "{text}");
     assert!(analysis.hints(all.clone()).iter().all(|hint| text.is_char_boundary(hint.at)), "{text}");
     for fix in analysis.fixes(all.clone()) {
         assert!(fix.edits.iter().all(|edit| text.get(edit.at.range.clone()).is_some()), "{text}");
@@ -49,6 +50,15 @@ fn ask(text: &str, at: usize) {
         );
     }
     ide::signatures(&root(), analysis.source(), at, &limits, &|| false);
+}
+
+/// All that does not depend on what names mean.
+fn places(symbols: &[Symbol]) -> Vec<(&str, Span, Span, bool)> {
+    let within = symbols.iter().flat_map(|symbol| {
+        let own = (symbol.name.as_str(), symbol.span, symbol.select, symbol.off);
+        [vec![own], places(&symbol.children)].concat()
+    });
+    within.collect()
 }
 
 /// Every few bytes of the cases, as if they were being typed.

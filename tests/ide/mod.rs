@@ -10,6 +10,7 @@ mod shown;
 use crate::folder::Folder;
 use rt_lang::files::FilePath;
 use rt_lang::ide::Analysis;
+use rt_lang::lower::Overrides;
 use rt_lang::source::Source;
 use rt_lang::{Options, analyse};
 use std::path::Path;
@@ -22,7 +23,9 @@ fn root() -> Folder {
 /// What a text means among the files of a folder.
 fn analysed(files: &Folder, name: &str, text: &str) -> Analysis {
     let source = Source::new(name, text).at(FilePath::root(name));
-    analyse(files, source, &Options::default(), &|| false).unwrap()
+    let overrides = Overrides { every_camera: true, ..Overrides::default() };
+    let options = Options { overrides, ..Options::default() };
+    analyse(files, source, &options, &|| false).unwrap()
 }
 
 /// A text without its marks, and these: where each stands, and what it asks.

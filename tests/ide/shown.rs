@@ -10,7 +10,8 @@ use rt_lang::span::Span;
 pub fn whole(analysis: &Analysis, question: &str) -> String {
     let all = 0..analysis.source().text.len();
     let lines: Vec<String> = match question {
-        "symbols" => analysis.symbols().iter().map(|symbol| symbols(analysis, symbol, 0)).collect(),
+        "symbols" => analysis.symbols().iter().map(|symbol| symbols(symbol, 0)).collect(),
+        "outline" => ide::outline(analysis.source()).iter().map(|symbol| symbols(symbol, 0)).collect(),
         "tokens" => analysis
             .tokens(all)
             .iter()
@@ -128,13 +129,13 @@ pub fn at(analysis: &Analysis, at: usize, question: &str) -> String {
     }
 }
 
-fn symbols(analysis: &Analysis, symbol: &Symbol, depth: usize) -> String {
+fn symbols(symbol: &Symbol, depth: usize) -> String {
     let off = if symbol.off { ", off" } else { "" };
     let mut shown =
         format!("{:1$}{2} {3:?} {4}{off}", "", 2 * depth, symbol.name, symbol.kind, symbol.detail);
     for child in &symbol.children {
         shown.push('\n');
-        shown.push_str(&symbols(analysis, child, depth + 1));
+        shown.push_str(&symbols(child, depth + 1));
     }
     shown
 }

@@ -100,7 +100,7 @@ impl Client {
     fn edit(&mut self, round: usize) -> std::io::Result<()> {
         self.version += 1;
         let line = line_of(round / 2);
-        let (end, text) = if round % 2 == 0 { (17, "1") } else { (18, "") };
+        let (end, text) = if round.is_multiple_of(2) { (17, "1") } else { (18, "") };
         self.send(&format!(
             r#""method":"textDocument/didChange","params":{{"textDocument":{{"uri":"untitled:a.rt","version":{}}},"contentChanges":[{{"range":{{"start":{{"line":{line},"character":17}},"end":{{"line":{line},"character":{end}}}}},"text":"{text}"}}]}}"#,
             self.version

@@ -1,9 +1,10 @@
 //! What needs more than Rust: `cargo xtask e2e` runs the command on a real terminal, on a full disk, killed again and
-//! again, on a farm, within little memory, against another renderer, in a browser, and as the README says.
+//! again, on a farm, within little memory, against another renderer, in a browser and in editors, and as the README says.
 //!
 //! Nothing is skipped quietly. A tool that is missing fails the step that needs it, with its name.
 
 mod compare;
+mod editors;
 mod export;
 mod lsp;
 mod preview;
@@ -35,6 +36,7 @@ const STEPS: &[(&str, Step)] = &[
     ("export", export::agreement),
     ("preview", preview::checks),
     ("mattes", mattes),
+    ("editors", editors::checks),
     ("processors", processors::same_bits),
     (ARM, processors::same_bits_on_arm),
     ("readme", readme::commands),
@@ -57,6 +59,10 @@ cargo xtask latency [ROUNDS]
 
   drives the page of `rtc watch` in Chromium, on an idle machine, and prints how long a save takes to be seen
 
+cargo xtask grammar
+
+  makes the parser of editors/tree-sitter-rt from its grammar.js (node)
+
 cargo xtask lsp
 
   types into a document of 2 000 lines, on an idle machine, and prints how soon the language server answers
@@ -73,6 +79,8 @@ cargo xtask e2e [STEP…]
   export     exported scenes against Mitsuba (from PyPI) and POV-Ray (povray, of Debian)
   preview    the page of `rtc watch` in a browser (chromium, of Debian; playwright-core, from npm, which needs node)
   mattes     Cryptomatte by an independent reader (from PyPI)
+  editors    the packages for editors, in Neovim (from PyPI), Vim, Emacs (vim, emacs-nox and elpa-eglot, of Debian) and as
+             what Visual Studio Code is given (node and npm); pictures of them by chromium, of Debian
   processors the same bytes on other x86-64 processors, by emulation (qemu-user)
   arm        the same on an ARM with NEON (gcc-aarch64-linux-gnu, and rustup for its standard library)
   readme     every command of the README, in a fresh clone of HEAD
@@ -95,6 +103,7 @@ fn main() -> ExitCode {
     let ended = match arguments.split_first() {
         Some((task, steps)) if task == "e2e" => e2e(steps),
         Some((task, [])) if task == "gallery" => gallery(),
+        Some((task, [])) if task == "grammar" => editors::grammar(),
         Some((task, arguments)) if task == "compare" => compare::compare(arguments),
         Some((task, arguments)) if task == "lsp" => lsp::latency(arguments),
         Some((task, arguments)) if task == "latency" => preview::latency(arguments),

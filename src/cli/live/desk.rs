@@ -13,8 +13,6 @@ pub struct Job {
     pub generation: u64,
     /// The scene with its texts.
     pub loaded: Loaded,
-    /// What a person calls what is different from the text before.
-    pub names: Option<String>,
 }
 
 impl Job {
@@ -26,6 +24,15 @@ impl Job {
     pub fn scene(&self) -> &Scene {
         self.loaded.compiled.scene.as_ref().expect("a job is made of a scene without errors")
     }
+}
+
+/// What a trace is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// A first look, and whatever must be known before anything can be answered. It is not worth pausing.
+    Short,
+    /// Samples.
+    Long,
 }
 
 /// What is asked of the picture that is being traced.
@@ -43,10 +50,10 @@ pub enum Question {
     Light {
         /// The file as the user names it.
         file: String,
-        /// Line and column, from 1.
+        /// Line and column, from 1; column 0 is the line's first word.
         place: [u32; 2],
-        /// Nothing where nothing stands there.
-        reply: Reply<Option<Mask>>,
+        /// The pixels, or why there are none.
+        reply: Reply<Result<Mask, String>>,
     },
 }
 
@@ -73,48 +80,55 @@ pub struct Desk {
 #[derive(Default)]
 struct Papers {
     next: Option<Arc<Job>>,
+    /// What is different between that and the job that was taken last, as a person calls it.
+    names: Vec<String>,
     first: Option<Window>,
     paused: bool,
     /// Paths wait while a text is compiled.
     reading: bool,
     /// Of the trace that is under way.
-    control: Option<Arc<Control>>,
+    control: Option<(Arc<Control>, Effort)>,
     /// Of an answer that is under way.
     answering: Option<Arc<Control>>,
     questions: VecDeque<Question>,
 }
 
 impl Desk {
-    /// Leaves a job, in place of one that nobody has taken; what is under way is to stop.
-    pub fn put(&self, job: Arc<Job>) {
+    /// Leaves a job, in place of one that nobody has taken, with what is different from the one before; what is under way is to
+    /// stop.
+    pub fn put(&self, job: Arc<Job>, names: Vec<String>) {
         let mut papers = self.lock();
         papers.next = Some(job);
-        for control in papers.control.iter().chain(&papers.answering) {
-            control.cancel();
+        for name in names {
+            if !papers.names.contains(&name) {
+                papers.names.push(name);
+            }
         }
+        let tracing = papers.control.iter().map(|(control, _)| control);
+        tracing.chain(&papers.answering).for_each(|control| control.cancel());
         self.news.notify_all();
     }
 
-    /// Takes the next job as soon as there is one.
-    pub fn take(&self) -> Arc<Job> {
+    /// Takes the next job as soon as there is one, with what is different from the one that was taken before.
+    pub fn take(&self) -> (Arc<Job>, Vec<String>) {
         let mut papers = self.lock();
         loop {
             match papers.next.take() {
-                Some(job) => return job,
+                Some(job) => return (job, std::mem::take(&mut papers.names)),
                 None => papers = self.wait(papers),
             }
         }
     }
 
     /// A handle for a trace that is about to begin; none where a new job waits.
-    pub fn begin(&self) -> Option<Arc<Control>> {
+    pub fn begin(&self, effort: Effort) -> Option<Arc<Control>> {
         let mut papers = self.lock();
         if papers.next.is_some() {
             return None;
         }
         let control = Arc::new(Control::new());
-        control.pause(papers.paused || papers.reading);
-        papers.control = Some(control.clone());
+        papers.control = Some((control.clone(), effort));
+        papers.hold();
         Some(control)
     }
 
@@ -140,7 +154,7 @@ impl Desk {
     pub fn put_first(&self, window: Option<Window>) {
         let mut papers = self.lock();
         papers.first = window;
-        if let Some(control) = &papers.control {
+        if let Some((control, _)) = &papers.control {
             control.cancel();
         }
         self.news.notify_all();
@@ -214,8 +228,8 @@ impl Desk {
 
 impl Papers {
     fn hold(&self) {
-        if let Some(control) = &self.control {
-            control.pause(self.paused || self.reading);
+        if let Some((control, effort)) = &self.control {
+            control.pause(self.reading || self.paused && *effort == Effort::Long);
         }
     }
 }

@@ -17,12 +17,15 @@ use rt_lang::render::Window;
 use rt_lang::source::Sources;
 use rt_lang::span::SourceId;
 use rt_lang::syntax::{self, ast};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Instant;
+
+/// What is said where a picture is asked about before the first.
+const NO_PICTURE: &str = "there is no picture yet";
 
 /// Reads, compiles, and decides.
 pub struct Engine {
@@ -34,8 +37,12 @@ pub struct Engine {
     hub: Arc<Hub>,
     interrupt: Interrupt,
     terminal: Terminal,
-    /// What pages set.
+    /// What is set, by the command line and by pages.
     set: BTreeMap<String, String>,
+    /// Of that, what the text had and has no more. Set again when it comes back.
+    gone: BTreeSet<String>,
+    /// The params that the text has had.
+    had: BTreeSet<String>,
     /// Which of them are new.
     fresh: Vec<String>,
     generation: u64,
@@ -74,6 +81,8 @@ impl Engine {
             interrupt,
             terminal,
             set,
+            gone: BTreeSet::new(),
+            had: BTreeSet::new(),
             generation: 0,
             job: None,
             said,
@@ -131,11 +140,11 @@ impl Engine {
             }
             Request::Why { x, y, patient, reply } => match self.job {
                 Some(_) => self.desk.ask(Question::Why { pixel: [x, y], patient, reply }),
-                None => drop(reply.send(Err("there is no picture yet".into()))),
+                None => drop(reply.send(Err(NO_PICTURE.into()))),
             },
             Request::Light { file, line, column, reply } => match self.job {
                 Some(_) => self.desk.ask(Question::Light { file, place: [line, column], reply }),
-                None => drop(reply.send(None)),
+                None => drop(reply.send(Err(NO_PICTURE.into()))),
             },
         }
     }
@@ -158,8 +167,8 @@ impl Engine {
         // Its name is put before `=`: anything else would set something else.
         let known = self.hub.status().params.iter().any(|param| param.name == name);
         let changed = match value.trim() {
-            _ if !known => false,
             "" => self.set.remove(&name).is_some(),
+            _ if !known => false,
             value => self.set.insert(name.clone(), value.into()).as_deref() != Some(value),
         };
         if changed {
@@ -171,10 +180,12 @@ impl Engine {
     /// Looks whether there is a new text.
     fn look(&mut self, anyway: bool) {
         self.again = None;
-        let Engine { reader, desk, set, hub, .. } = self;
+        let Engine { reader, desk, set, gone, hub, .. } = self;
+        let set = set.iter().filter(|(name, _)| !gone.contains(*name));
+        let set: BTreeMap<String, String> = set.map(|(name, value)| (name.clone(), value.clone())).collect();
         let reads = || hub.say(|status| status.state = State::Compiling);
         let before = hub.status().state;
-        match desk.reading(|| reader.look(set, anyway, reads)) {
+        match desk.reading(|| reader.look(&set, anyway, reads)) {
             // What lies on the way to a missing file may have come.
             Seen::Same => self.watcher.follow(self.reader.files()),
             Seen::Later(wait) => {
@@ -184,9 +195,26 @@ impl Engine {
             }
             Seen::New(loaded) => {
                 self.watcher.follow(self.reader.files());
-                self.take(*loaded);
+                match self.notice_gone(&loaded) {
+                    true => self.look(true),
+                    false => self.take(*loaded),
+                }
             }
         }
+    }
+
+    /// A param that is set may be taken out of the text, or be broken for a moment: it is no mistake of whoever edits. Whether
+    /// other params are gone now than before.
+    fn notice_gone(&mut self, loaded: &Result<Loaded, Problem>) -> bool {
+        let Ok(loaded) = loaded else { return false };
+        let params = &loaded.compiled.inventory.params;
+        let names: BTreeSet<String> = params.iter().map(|param| param.name.clone()).collect();
+        let set = self.set.keys().filter(|name| self.had.contains(*name) && !names.contains(*name));
+        let gone = set.cloned().collect();
+        self.had.extend(names);
+        let other = gone != self.gone;
+        self.gone = gone;
+        other
     }
 
     /// Takes what was read.
@@ -232,7 +260,7 @@ impl Engine {
         let before = self.job.as_ref().map(|job| &job.loaded.sources);
         let mut names = std::mem::take(&mut self.fresh);
         names.extend(before.iter().flat_map(|before| changed(before, &loaded.sources)));
-        let job = Arc::new(Job { generation: self.generation, loaded, names: listed(names) });
+        let job = Arc::new(Job { generation: self.generation, loaded });
         let notes = job.loaded.compiled.notes.clone();
         let generation = self.generation;
         let resized = self.job.as_ref().is_some_and(|old| old.scene().trace.size != job.scene().trace.size);
@@ -250,13 +278,13 @@ impl Engine {
             self.terminal.line("no errors any more");
         }
         self.job = Some(job.clone());
-        self.desk.put(job);
+        self.desk.put(job, names);
     }
 
     /// Says what can be set, and of which files the scene is made.
     fn describe(&self, loaded: &Loaded) {
         let set = |name: &str| self.set.get(name);
-        let params: Vec<Param> = loaded
+        let mut params: Vec<Param> = loaded
             .compiled
             .inventory
             .params
@@ -272,10 +300,13 @@ impl Engine {
                 high: param.range.as_ref().map(|[_, high]| high.clone()),
             })
             .collect();
+        let understood = !params.is_empty() || !any_errors(&loaded.compiled.diagnostics);
+        let gone = self.gone.iter().filter_map(|name| Some((name, self.set.get(name)?)));
+        params.extend(gone.map(|(name, value)| Param::gone(name, value)));
         let files = self.reader.files().map(|path| shown(&path)).collect::<std::collections::BTreeSet<_>>();
         self.hub.say(|status| {
             // A text that could not be understood has no params; those that were are still there to be mended with.
-            if !params.is_empty() || !any_errors(&loaded.compiled.diagnostics) {
+            if understood {
                 status.params = params;
             }
             status.files = files.into_iter().collect();
@@ -346,12 +377,4 @@ fn changed(before: &Sources, after: &Sources) -> Vec<String> {
     let old = |name: &str| before.iter().map(|(_, source)| source).find(|source| source.name == name);
     let texts = after.iter().filter_map(|(_, source)| Some((&old(&source.name)?.text, &source.text)));
     texts.filter(|(old, new)| old != new).flat_map(|(old, new)| change::names(old, new)).collect()
-}
-
-/// What a person is told of them.
-fn listed(mut names: Vec<String>) -> Option<String> {
-    names.dedup();
-    names.truncate(3);
-    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
-    (!quoted.is_empty()).then(|| quoted.join(", "))
 }

@@ -178,7 +178,7 @@ pub struct Param {
     pub ty: String,
     /// The words above it.
     pub doc: Option<String>,
-    /// The expression in the file.
+    /// The expression in the file; empty where the file has no such param any more.
     pub default: String,
     /// The expression in force.
     pub value: String,
@@ -188,6 +188,22 @@ pub struct Param {
     pub low: Option<String>,
     /// The greatest it may be, as written.
     pub high: Option<String>,
+}
+
+impl Param {
+    /// One that is set, and that the file has no more.
+    pub fn gone(name: &str, value: &str) -> Param {
+        Param {
+            name: name.into(),
+            ty: String::new(),
+            doc: None,
+            default: String::new(),
+            value: value.into(),
+            set: true,
+            low: None,
+            high: None,
+        }
+    }
 }
 
 /// Pixels of a picture, chosen or not.
@@ -264,10 +280,10 @@ pub enum Request {
         file: String,
         /// From 1.
         line: u32,
-        /// From 1.
+        /// From 1; 0 is the line's first word.
         column: u32,
-        /// Nothing where nothing stands there.
-        reply: Reply<Option<Mask>>,
+        /// The pixels, or why there are none.
+        reply: Reply<Result<Mask, String>>,
     },
 }
 

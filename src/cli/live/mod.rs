@@ -13,7 +13,8 @@
 //! | [`engine`] | what a new text leads to |
 //! | [`desk`] | where work waits |
 //! | [`painter`], [`work`] | tracing the newest scene, step by step |
-//! | [`answers`] | why a pixel looks as it does, and where a place of the text is seen |
+//! | [`mix`] | lamps that became brighter, before they are traced |
+//! | [`answers`], [`lit`] | why a pixel looks as it does, and where a place of the text is seen |
 //! | [`writer`] | pictures to files, in the background |
 //! | [`said`] | what the compiler says, as a page shows it |
 //! | [`hub`] | what everybody may know, and ask |
@@ -25,6 +26,8 @@ mod desk;
 mod editor;
 mod engine;
 pub mod hub;
+mod lit;
+mod mix;
 mod painter;
 mod reader;
 mod said;

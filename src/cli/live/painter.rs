@@ -1,8 +1,10 @@
 //! Traces the newest scene, progressively, and keeps what stays good.
 
 use super::answers::answer_all;
-use super::desk::{Desk, Job};
+use super::desk::{Desk, Effort, Job};
 use super::hub::{Aim, Frame, Hub, Shown, State};
+use super::mix::Mix;
+use super::said::listed;
 use super::work::{Step, Work};
 use super::writer::{Page, Writer};
 use crate::cli::build::chosen_stops;
@@ -14,8 +16,6 @@ use rt_lang::change::{self, Change, Paths};
 use rt_lang::color::Rgb;
 use rt_lang::output::Facts;
 use rt_lang::render::halt::{self, FIRST_NOISE_SAMPLES, Limit, MOST_NOISE_SAMPLES};
-use rt_lang::render::light::Source;
-use rt_lang::render::shares::Shares;
 use rt_lang::render::{Control, Film, Prepass, Structure, Tracer, Window};
 use rt_lang::scene::{Background, Scene, Target};
 use std::sync::Arc;
@@ -27,6 +27,8 @@ const LOOK: u32 = 8;
 const SOON: u64 = 1 << 18;
 /// Between two pictures that are shown so many times as long is traced as it takes to show one.
 const SHARE: u32 = 10;
+/// And at least so long: a page takes as long to paint one as this to trace, and is to have time for whoever uses it.
+const CALM: Duration = Duration::from_millis(200);
 
 /// What is traced, where it is shown, and where it goes.
 pub struct Painter {
@@ -66,15 +68,9 @@ struct Left {
     structure: Option<Structure>,
     mix: Option<Mix>,
     canvas: Option<Canvas>,
+    /// Whether a mix is shown in place of a picture with few samples.
+    mixing: bool,
     version: u64,
-}
-
-/// A picture that was done, and how bright its lamps have become since.
-struct Mix {
-    picture: Arc<Frame>,
-    shares: Shares,
-    /// Of each of their sources.
-    factors: Vec<Rgb>,
 }
 
 /// A picture that was mixed anew is shown until the traced one has so many samples a pixel.
@@ -113,8 +109,8 @@ impl Painter {
         let _bomb = Bomb;
         let mut left = Left::default();
         loop {
-            let job = self.desk.take();
-            left = Painting::new(self, &job, left).run();
+            let (job, names) = self.desk.take();
+            left = Painting::new(self, &job, &names, left).run();
             left.job = Some(job);
         }
     }
@@ -124,35 +120,36 @@ impl Painter {
 struct Painting<'a> {
     painter: &'a Painter,
     job: &'a Job,
+    /// What a person calls what is different from the job before.
+    names: &'a [String],
     scene: &'a Scene,
     /// What is different from the job before, which need not be the text before: some are overtaken.
     change: Option<Change>,
-    /// Whether a mix is shown in place of a picture with few samples.
-    mixing: bool,
     /// The scene's, in hexadecimal.
     hash: String,
     left: Left,
 }
 
 impl<'a> Painting<'a> {
-    fn new(painter: &'a Painter, job: &'a Job, left: Left) -> Painting<'a> {
+    fn new(painter: &'a Painter, job: &'a Job, names: &'a [String], left: Left) -> Painting<'a> {
         let scene = job.scene();
         let hash = scene.hash().to_hex().to_string();
         let change = left.job.as_ref().map(|before| change::between(before.scene(), scene));
-        Painting { painter, job, scene, change, mixing: false, hash, left }
+        Painting { painter, job, names, scene, change, hash, left }
     }
 
     fn run(mut self) -> Left {
         let Painter { front, threads, desk, hub, .. } = self.painter;
         let mut tracer = front.install(|| Tracer::at_once(self.scene, self.left.structure.take()));
         let canvas = self.left.canvas.take().and_then(|canvas| self.keep(canvas));
-        if canvas.is_none() {
-            front.install(|| self.remix());
-        }
-        let remixed = self.mixing;
-        self.say_reason(canvas.is_some(), tracer.keeps_structure(), remixed);
+        let prepass = match &canvas {
+            Some(canvas) => canvas.prepass,
+            None => front.install(|| tracer.prepass()),
+        };
+        front.install(|| self.remix(&prepass));
+        self.say_reason(canvas.is_some(), tracer.keeps_structure());
         let fresh = canvas.is_none();
-        let begun = canvas.or_else(|| front.install(|| self.begin(&tracer)));
+        let begun = canvas.or_else(|| front.install(|| self.begin(&tracer, prepass)));
         if let Some(canvas) = begun {
             if threads.install(|| self.find_caustics(&mut tracer)) {
                 std::thread::scope(|scope| {
@@ -174,7 +171,7 @@ impl<'a> Painting<'a> {
     /// Looks where caustics come from. False if a new job comes before that is known.
     fn find_caustics(&self, tracer: &mut Tracer) -> bool {
         // It is cancelled too where only another window is to come first.
-        while let Some(control) = self.painter.desk.begin() {
+        while let Some(control) = self.painter.desk.begin(Effort::Short) {
             if tracer.find_caustics(&control).is_ok() {
                 return true;
             }
@@ -200,14 +197,16 @@ impl<'a> Painting<'a> {
         within.then_some(canvas)
     }
 
-    fn say_reason(&self, samples_kept: bool, structure_kept: bool, remixed: bool) {
+    fn say_reason(&self, samples_kept: bool, structure_kept: bool) {
         let Some(change) = &self.change else { return };
-        let what = self.job.names.as_deref().unwrap_or("the text");
+        let what = listed(self.names).unwrap_or_else(|| "the text".into());
         let how = match (&change.paths, samples_kept) {
             (Paths::Kept, true) if change.developed => "developed anew, no ray traced again".to_string(),
             (Paths::Kept, true) if change.target => "all samples kept, going on".to_string(),
             (Paths::Kept, true) => "the picture is the same, all samples kept".to_string(),
-            _ if remixed => "remixed at once, re-tracing, structure kept".to_string(),
+            (Paths::Lamps(_), _) if self.left.mixing => {
+                "remixed at once, re-tracing, structure kept".to_string()
+            }
             _ if structure_kept => "re-tracing, structure kept".to_string(),
             _ => "re-tracing".to_string(),
         };
@@ -218,43 +217,32 @@ impl<'a> Painting<'a> {
         self.painter.hub.say(|status| status.reason = Some(reason));
     }
 
-    /// Where only lamps have become brighter or darker, shows at once what that does to the picture that was done.
-    fn remix(&mut self) {
-        let mix = self.left.mix.take();
-        let (Some(mut mix), Some(change)) = (mix, &self.change) else { return };
-        let Paths::Lamps(factors) = &change.paths else { return };
-        let factor = |source: &Source| match source {
-            Source::Light(index) => factors[*index as usize],
-            Source::Primitive(id) => {
-                let material = self.scene.primitives[id.0 as usize].material;
-                factors[self.scene.lights.len() + material.0 as usize]
-            }
-        };
-        for (sum, source) in mix.factors.iter_mut().zip(mix.shares.sources()) {
-            *sum *= factor(source);
+    /// Where only lamps have become brighter or darker, shows at once what that does to the picture that was done; and goes on
+    /// to show it where nothing but words, or how it is developed, has changed since.
+    fn remix(&mut self, prepass: &Prepass) {
+        let was_mixing = std::mem::take(&mut self.left.mixing);
+        let Some(change) = &self.change else { return };
+        match (&change.paths, &mut self.left.mix) {
+            (Paths::Lamps(factors), Some(mix)) => mix.relight(self.scene, factors),
+            (Paths::Kept, Some(_)) if was_mixing => {}
+            (Paths::New, _) => return self.left.mix = None,
+            _ => return,
         }
-        let [width, _] = mix.picture.size;
-        let pixels = mix.picture.pixels.par_iter().enumerate().map(|(index, pixel)| {
-            let (x, y) = (index as u32 % width, index as u32 / width);
-            let [r, g, b] = mix.shares.factor(x, y, &mix.factors);
-            let [red, green, blue, error, alpha] = *pixel;
-            [red * r, green * g, blue * b, error, alpha]
-        });
-        let pixels = pixels.collect();
-        let shown = mix.picture.shown;
-        let frame = self.frame(pixels, 1, mix.picture.samples, shown, true);
+        let Some(mix) = &self.left.mix else { return };
+        let (pixels, samples) = (mix.pixels(), mix.picture.samples);
+        let frame = self.frame(pixels, 1, samples, self.shown(prepass), true);
         self.painter.hub.show(frame);
-        self.left.mix = Some(mix);
-        self.mixing = true;
+        self.left.mixing = true;
     }
 
     /// Learns how much of the picture is of which lamp, if nobody wants anything else.
-    fn learn_shares(&mut self, tracer: &Tracer, frame: Arc<Frame>) {
-        let Some(control) = self.painter.desk.begin() else { return };
-        self.left.mix = None;
-        if let Ok(Some(shares)) = tracer.shares(&control) {
-            let factors = vec![Rgb::ONE; shares.sources().len()];
-            self.left.mix = Some(Mix { picture: frame, shares, factors });
+    fn learn_shares(&mut self, tracer: &Tracer, picture: &Arc<Frame>) {
+        // It is cancelled too where only another window is to come first.
+        while let Some(control) = self.painter.desk.begin(Effort::Long) {
+            if let Ok(mix) = Mix::learn(tracer, picture, &control) {
+                self.left.mix = mix;
+                return;
+            }
         }
     }
 
@@ -280,7 +268,7 @@ impl<'a> Painting<'a> {
                 desk.rest(first);
                 continue;
             };
-            let Some(control) = desk.begin() else { break };
+            let Some(control) = desk.begin(Effort::Long) else { break };
             self.say_progress(&canvas, State::Rendering);
             if !self.step(tracer, &mut canvas, &step, &control) {
                 continue;
@@ -290,7 +278,7 @@ impl<'a> Painting<'a> {
                 written = level;
                 let frame = self.show(&mut canvas, true);
                 self.write(frame, None);
-            } else if shown.elapsed() > SHARE * cost {
+            } else if shown.elapsed() > (SHARE * cost).max(CALM) {
                 let start = Instant::now();
                 self.show(&mut canvas, false);
                 (shown, cost) = (Instant::now(), start.elapsed());
@@ -300,14 +288,14 @@ impl<'a> Painting<'a> {
     }
 
     /// Takes a first look. None if a new job comes before it is done.
-    fn begin(&mut self, tracer: &Tracer) -> Option<Canvas> {
-        let (start, prepass) = (Instant::now(), tracer.prepass());
+    fn begin(&mut self, tracer: &Tracer, prepass: Prepass) -> Option<Canvas> {
+        let start = Instant::now();
         let size = self.scene.trace.size;
         let mut look = Look::default();
         let soon = !tracer.knows_caustics() && size.map(u64::from).iter().product::<u64>() <= SOON;
         for step in if soon { &[LOOK, 1][..] } else { &[LOOK] } {
             look = self.look(tracer, *step)?;
-            if !self.mixing {
+            if !self.left.mixing {
                 let shown = self.shown(&prepass);
                 let frame = self.frame(look.pixels.clone(), *step, [0, 1], shown, false);
                 self.painter.hub.show(frame);
@@ -331,7 +319,7 @@ impl<'a> Painting<'a> {
     /// Looks at one pixel of so many across and down. None if a new job comes before it is done.
     fn look(&self, tracer: &Tracer, step: u32) -> Option<Look> {
         let seen = loop {
-            let control = self.painter.desk.begin()?;
+            let control = self.painter.desk.begin(Effort::Short)?;
             // It is cancelled too where only another window is to come first.
             if let Ok(seen) = tracer.look(step, &control) {
                 break seen;
@@ -428,9 +416,9 @@ impl<'a> Painting<'a> {
             (facts.noise, facts.limit) = (canvas.noise, Some(limit.word().into()));
         }
         if samples[0] >= ENOUGH.min(canvas.aim) {
-            self.mixing = false;
+            self.left.mixing = false;
         }
-        if !self.mixing {
+        if !self.left.mixing {
             self.painter.hub.show(frame.clone());
         }
         frame
@@ -446,13 +434,16 @@ impl<'a> Painting<'a> {
     ) -> Arc<Frame> {
         self.left.version += 1;
         let scene = self.scene;
-        let facts = Facts {
-            samples: Some(u64::from(samples[0])),
-            seed: Some(scene.trace.seed),
-            scene: Some(self.hash.clone()),
-            stops: Some(shown.stops),
-            tonemap: Some(shown.tonemap),
-            ..Facts::unknown()
+        let facts = Facts { stops: Some(shown.stops), tonemap: Some(shown.tonemap), ..Facts::unknown() };
+        let facts = match remixed {
+            // Nothing that could be traced again.
+            true => facts,
+            false => Facts {
+                samples: Some(u64::from(samples[0])),
+                seed: Some(scene.trace.seed),
+                scene: Some(self.hash.clone()),
+                ..facts
+            },
         };
         Arc::new(Frame {
             generation: self.job.generation,
@@ -484,7 +475,7 @@ impl<'a> Painting<'a> {
             }
             canvas.done = true;
             self.say_progress(canvas, State::Done);
-            self.learn_shares(tracer, frame);
+            self.learn_shares(tracer, &frame);
         }
         self.say_progress(canvas, State::Done);
     }

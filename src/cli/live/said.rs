@@ -65,3 +65,12 @@ mod tests {
         assert_eq!(places, [(12, 3, 3, 12), (4, 5, 39, 47)]);
     }
 }
+
+/// What a person is told of names.
+pub fn listed(names: &[String]) -> Option<String> {
+    /// More than anybody reads.
+    const MOST: usize = 3;
+    let quoted: Vec<String> = names.iter().take(MOST).map(|name| format!("`{name}`")).collect();
+    let more = if names.len() > MOST { " and more" } else { "" };
+    (!quoted.is_empty()).then(|| format!("{}{more}", quoted.join(", ")))
+}

@@ -76,7 +76,8 @@ impl Server {
     pub fn new(connection: Connection, root: Option<PathBuf>, interrupt: Interrupt) -> io::Result<Server> {
         let (tell, told) = bounded(QUEUE);
         let (client, pages) = (Client::default(), Pages::default());
-        let session = Session { client, encoding: encoding(&Value::Null), root, pages };
+        let (encoding, memory) = (encoding(&Value::Null), Arc::default());
+        let session = Session { client, encoding, root, pages, memory };
         let view = View { session: Arc::new(session), documents: Documents::default(), folders: vec![] };
         let view = Arc::new(view);
         Ok(Server {
@@ -234,6 +235,7 @@ impl Server {
             encoding: encoding(params),
             root: view.session.root.clone(),
             pages: Pages::default(),
+            memory: Arc::default(),
         });
         serde_json::to_value(initialized(view.session.encoding))
             .map_err(|error| Failure::new(ErrorCode::InternalError, error.to_string()))

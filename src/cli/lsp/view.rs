@@ -5,6 +5,7 @@ use super::document::Encoding;
 use super::documents::Documents;
 use super::pages::Pages;
 use rt_lang::Options;
+use rt_lang::files::Memory;
 use rt_lang::lower::Overrides;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -20,6 +21,8 @@ pub struct Session {
     pub root: Option<PathBuf>,
     /// The pages on diagnostics.
     pub pages: Pages,
+    /// Of texts that are read again after each edit.
+    pub memory: Arc<Memory>,
 }
 
 impl Session {

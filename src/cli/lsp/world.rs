@@ -6,7 +6,7 @@
 use super::documents::{Document, Key, MOST_TEXT};
 use super::view::View;
 use crate::cli::files::Disk;
-use rt_lang::files::{FileError, FilePath, Files};
+use rt_lang::files::{FileError, FilePath, Files, Memory};
 use rt_lang::source::Source;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -23,6 +23,7 @@ pub struct World {
     /// What the paths begin with that it may read.
     within: String,
     asked: Mutex<BTreeSet<Key>>,
+    memory: Arc<Memory>,
 }
 
 /// What the paths of an analysis mean.
@@ -67,6 +68,7 @@ impl World {
             open: open.into_iter().map(|(path, (_, document))| (path, document)).collect(),
             own,
             asked: Mutex::default(),
+            memory: view.session.memory.clone(),
         }
     }
 
@@ -82,6 +84,7 @@ impl World {
             own,
             within: String::new(),
             asked: Mutex::default(),
+            memory: view.session.memory.clone(),
         }
     }
 
@@ -130,6 +133,10 @@ impl Files for World {
         };
         let listed = self.disk.as_ref().map(|disk| disk.list(folder)).unwrap_or_default();
         listed.into_iter().filter(may).collect()
+    }
+
+    fn memory(&self) -> Option<&Memory> {
+        Some(&self.memory)
     }
 
     fn name(&self, path: &FilePath) -> String {

@@ -199,6 +199,8 @@ fn usual(id: KindId) -> Vec<&'static Field> {
 /// A value that a field may have, with the parts as holes that are to be filled in.
 pub(super) fn example(field: &Field) -> String {
     match field.default {
+        // A point or a direction is filled in by components.
+        Preset::Value("0") if matches!(field.ty, FieldType::Tuple(..)) => example_of(field.ty),
         Preset::Value(value) => format!("‹{value}›"),
         Preset::Required | Preset::Absent(_) => example_of(field.ty),
     }

@@ -34,10 +34,8 @@ impl List<'_> {
             return;
         }
         self.functions(ty);
-        if !ty.is_some_and(takes_colour) {
-            self.colours(Rank::Seldom);
-        }
         if ty.is_none() {
+            self.colours(Rank::Seldom);
             for kind in KINDS.iter().filter(|kind| kind.category != Category::Block) {
                 self.kind(kind.name, Rank::Rather);
             }
@@ -83,9 +81,10 @@ impl List<'_> {
         for (name, place, ty) in typing.visible() {
             let rank = match (wanted, ty) {
                 (_, Type::Part(_)) => continue,
-                (_, Type::File(_)) => Rank::Rather,
+                (None, Type::File(_)) => Rank::Rather,
                 (Some(wanted), ty) if wanted.accepts(ty) && *ty != Type::Invalid => Rank::Fits,
-                (Some(_), _) => Rank::Rather,
+                (Some(wanted), ty) if leads_to(ty, wanted) => Rank::Rather,
+                (Some(_), _) => continue,
                 (None, _) => Rank::Fits,
             };
             let completion = self.push(name, kind_of(ty), rank);
@@ -213,8 +212,20 @@ fn inside(typing: &Typing, ty: &Type) -> Vec<(String, Span, Type)> {
     names.map(|(name, known)| (name.to_string(), known.place, known.ty.clone())).collect()
 }
 
-fn takes_colour(ty: FieldType) -> bool {
-    matches!(ty, FieldType::Color | FieldType::Paint)
+/// Whether a value of a type may be part of an expression that gives what is wanted.
+fn leads_to(ty: &Type, wanted: &Declared) -> bool {
+    let computed = |wanted: &FieldType| {
+        matches!(wanted, FieldType::Scalar(_) | FieldType::Int | FieldType::Tuple(..) | FieldType::Bool)
+    };
+    match (wanted, ty) {
+        (Declared::Field(FieldType::Choice(_) | FieldType::Named(_) | FieldType::Text), _) => false,
+        (_, Type::Invalid | Type::Function(_) | Type::List(_) | Type::Row(_) | Type::File(_)) => true,
+        (Declared::Field(FieldType::OneOf(types)), _) => types.iter().any(computed),
+        (Declared::Field(wanted), Type::Scalar(_) | Type::Tuple(..) | Type::Bool | Type::Thing(_)) => {
+            computed(wanted)
+        }
+        _ => false,
+    }
 }
 
 /// Whether a function may well give what is wanted.
@@ -227,7 +238,7 @@ fn gives(function: Function, wanted: FieldType) -> bool {
         }
         FieldType::Transform => matches!(function, Scale | Turn | Move | Matrix),
         FieldType::OneOf(types) => types.iter().any(|ty| gives(function, *ty)),
-        FieldType::Scalar(_) | FieldType::Int | FieldType::Tuple(..) => {
+        FieldType::Scalar(_) | FieldType::Int | FieldType::Tuple(..) | FieldType::IntTuple(_) => {
             !matches!(function, Rgb | Srgb | Hsv | Blackbody | Scale | Turn | Move | Matrix | Table | Range)
                 && texture_parameters(function).is_none()
         }

@@ -46,7 +46,7 @@ export async function guarded(url) {
   equal(await status(port, [`POST ${pathname} HTTP/1.1`, host, "Content-Length: 0"]), 405, "a POST");
 }
 
-/// Holds a socket and never reads from it.
+/// Holds a socket and never reads from it, but says things.
 export function deaf(url) {
   const { port, pathname } = new URL(url);
   return new Promise((resolve, reject) => {
@@ -55,7 +55,13 @@ export function deaf(url) {
     socket.on("error", reject);
     socket.connect(port, "127.0.0.1", () => {
       socket.write([`GET ${pathname}socket HTTP/1.1`, `Host: 127.0.0.1:${port}`, `Origin: http://127.0.0.1:${port}`, ...UPGRADE].join("\r\n") + "\r\n\r\n");
-      resolve(socket);
+      resolve({ say: (message) => socket.write(masked(JSON.stringify(message))), end: () => socket.destroy() });
     });
   });
+}
+
+/// A short text as a frame of a browser (RFC 6455, section 5.2), masked with zeros.
+function masked(text) {
+  const payload = Buffer.from(text);
+  return Buffer.concat([Buffer.from([0x81, 0x80 | payload.length, 0, 0, 0, 0]), payload]);
 }

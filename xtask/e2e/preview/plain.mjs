@@ -43,7 +43,7 @@ export async function open(url, { width, height } = { width: 1280, height: 760 }
     async close() {
       child.kill();
       await ended;
-      rmSync(profile, { recursive: true, force: true, maxRetries: 5 });
+      rmSync(profile, { recursive: true, force: true, maxRetries: 20 });
     },
   };
 }

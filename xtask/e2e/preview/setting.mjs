@@ -60,9 +60,10 @@ export async function watch(scene, flags = [], env = {}) {
   return { url, end, child, said: () => said };
 }
 
-/// A page of the preview that has shown a picture with every pixel.
-export async function open(browser, url, options = {}) {
+/// A page of the preview that has shown a picture with every pixel. `before` is run in it before anything else.
+export async function open(browser, url, options = {}, before = () => {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 760 }, colorScheme: "dark", ...options });
+  await context.addInitScript(before);
   const page = await context.newPage();
   page.problems = [];
   page.on("pageerror", (error) => page.problems.push(error.message));
@@ -96,6 +97,62 @@ export const shown = (page, count = 500) =>
     }
     return all;
   }, count);
+
+/// Reads a PFM: a function of x and y.
+export function radiances(path) {
+  const bytes = load(path, null);
+  const [, width, height] = /^PF\n(\d+) (\d+)\n/.exec(bytes.toString("latin1", 0, 64)).map(Number);
+  const at = bytes.length - width * height * 12;
+  return (x, y) => [0, 4, 8].map((channel) => bytes.readFloatLE(at + ((height - 1 - y) * width + x) * 12 + channel));
+}
+
+/// Red, green and blue of every fourth pixel across and down of a picture that is shown as large as it goes.
+export const pixels = (page, size) =>
+  page.evaluate(async ([width, height]) => {
+    await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
+    const stage = document.getElementById("stage");
+    const zoom = Math.min((stage.width - 24) / width, (stage.height - 24) / height);
+    const { data } = stage.getContext("2d").getImageData(0, 0, stage.width, stage.height);
+    const all = [];
+    for (let y = 2; y < height; y += 4) {
+      for (let x = 2; x < width; x += 4) {
+        const column = Math.floor((stage.width - width * zoom) / 2 + (x + 0.5) * zoom);
+        const row = Math.floor((stage.height - height * zoom) / 2 + (y + 0.5) * zoom);
+        const at = 4 * (row * stage.width + column);
+        all.push({ x, y, rgb: [...data.slice(at, at + 3)] });
+      }
+    }
+    return all;
+  }, size);
+
+/// Listens beside the page, from its own place: `heard()` gives the newest status, and of each picture that came since how
+/// many samples its pixels have and the corners of its tiles.
+export async function eavesdrop(page) {
+  await page.evaluate(async () => {
+    const socket = new WebSocket(new URL("socket", location.href).href.replace("http", "ws"));
+    socket.binaryType = "arraybuffer";
+    window.heard = { status: null, pictures: [] };
+    let tiles = [];
+    socket.onmessage = ({ data }) => {
+      if (typeof data !== "string") return tiles.push([...new Uint32Array(data, 16, 4)]);
+      const message = JSON.parse(data);
+      if (message.type === "status") window.heard.status = message;
+      if (message.type === "begin") tiles = [];
+      if (message.type === "frame") window.heard.pictures.push({ samples: message.samples, tiles });
+    };
+    await new Promise((resolve) => (socket.onopen = resolve));
+  });
+  await page.waitForFunction(() => window.heard.status && window.heard.pictures.length > 0);
+  return () => page.evaluate(() => window.heard);
+}
+
+/// Saves what a link of the page leads to.
+export async function download(page, link, path) {
+  const coming = page.waitForEvent("download");
+  await page.click(link);
+  await (await coming).saveAs(path);
+  return path;
+}
 
 /// The scenes of the checks.
 export const SCENE = `\

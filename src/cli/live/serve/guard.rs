@@ -13,7 +13,7 @@ use std::net::SocketAddr;
 /// Knows who may ask.
 pub struct Guard {
     /// As a browser writes them in `Host`.
-    hosts: [String; 2],
+    hosts: Vec<String>,
     token: String,
 }
 
@@ -40,6 +40,9 @@ pub struct Asset {
     pub text: &'static str,
 }
 
+/// The port that an address with `http://` means where it names none.
+const HTTP_PORT: u16 = 80;
+
 const SCRIPT: &str = "text/javascript; charset=utf-8";
 
 macro_rules! assets {
@@ -57,6 +60,7 @@ const ASSETS: &[Asset] = assets! {
     "develop.js" SCRIPT,
     "element.js" SCRIPT,
     "film.js" SCRIPT,
+    "find.js" SCRIPT,
     "hand.js" SCRIPT,
     "inspect.js" SCRIPT,
     "keys.js" SCRIPT,
@@ -65,12 +69,19 @@ const ASSETS: &[Asset] = assets! {
     "said.js" SCRIPT,
     "socket.js" SCRIPT,
     "view.js" SCRIPT,
+    "window.js" SCRIPT,
 };
 
 impl Guard {
     /// For a server at this address with this secret.
     pub fn new(address: SocketAddr, token: String) -> Guard {
-        Guard { hosts: [address.to_string(), format!("localhost:{}", address.port())], token }
+        let mut hosts = vec![address.to_string(), format!("localhost:{}", address.port())];
+        if address.port() == HTTP_PORT {
+            // Browsers leave it out.
+            let bare = |host: &String| host.strip_suffix(&format!(":{HTTP_PORT}")).map(str::to_string);
+            hosts.extend(hosts.iter().filter_map(bare).collect::<Vec<_>>());
+        }
+        Guard { hosts, token }
     }
 
     /// What is wished, if it may be.
@@ -140,16 +151,21 @@ mod tests {
 
     const TOKEN: &str = "00112233445566778899aabbccddeeff";
 
-    fn guard() -> Guard {
-        Guard::new(SocketAddr::from(([127, 0, 0, 1], 4877)), TOKEN.into())
+    fn ask(path: &str, headers: &[(&str, &str)]) -> Result<Wish, StatusCode> {
+        ask_at("127.0.0.1:4877", path, headers)
     }
 
-    fn ask(path: &str, headers: &[(&str, &str)]) -> Result<Wish, StatusCode> {
+    /// Asks a server at another address.
+    fn ask_at(address: &str, path: &str, headers: &[(&str, &str)]) -> Result<Wish, StatusCode> {
         let mut request = Request::builder().uri(path);
         for (name, value) in headers {
             request = request.header(*name, *value);
         }
-        guard().wish(&request.body(()).unwrap().into_parts().0)
+        guard(address).wish(&request.body(()).unwrap().into_parts().0)
+    }
+
+    fn guard(address: &str) -> Guard {
+        Guard::new(address.parse().unwrap(), TOKEN.into())
     }
 
     fn at(path: &str) -> Result<Wish, StatusCode> {
@@ -215,6 +231,24 @@ mod tests {
     }
 
     #[test]
+    fn the_port_that_browsers_leave_out_is_known() {
+        let socket = format!("/{TOKEN}/socket");
+        for (address, host) in [
+            ("127.0.0.1:80", "127.0.0.1"),
+            ("127.0.0.1:80", "localhost"),
+            ("127.0.0.1:80", "127.0.0.1:80"),
+            ("[::1]:80", "[::1]"),
+        ] {
+            let headers = [("host", host), ("origin", &format!("http://{host}"))];
+            assert_eq!(ask_at(address, &socket, &headers), Ok(Wish::Socket), "{address} {host}");
+        }
+        let refused = Err(StatusCode::FORBIDDEN);
+        for (address, host) in [("127.0.0.1:8080", "127.0.0.1"), ("127.0.0.1:80", "evil.example")] {
+            assert_eq!(ask_at(address, &socket, &[("host", host)]), refused, "{address} {host}");
+        }
+    }
+
+    #[test]
     fn a_socket_says_where_it_is_from() {
         let socket = format!("/{TOKEN}/socket");
         assert_eq!(at(&socket), Err(StatusCode::FORBIDDEN));
@@ -227,6 +261,6 @@ mod tests {
         let mut parts =
             Request::builder().uri(format!("/{TOKEN}/")).method("POST").body(()).unwrap().into_parts().0;
         parts.headers.insert(header::HOST, "127.0.0.1:4877".parse().unwrap());
-        assert_eq!(guard().wish(&parts), Err(StatusCode::METHOD_NOT_ALLOWED));
+        assert_eq!(guard("127.0.0.1:4877").wish(&parts), Err(StatusCode::METHOD_NOT_ALLOWED));
     }
 }

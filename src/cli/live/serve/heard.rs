@@ -53,7 +53,7 @@ pub enum Heard {
         file: String,
         /// From 1.
         line: u32,
-        /// From 1.
+        /// From 1; 0 is the line's first word.
         column: u32,
     },
     /// This place is to be opened in the editor.

@@ -134,12 +134,13 @@ fn reason(status: StatusCode) -> &'static str {
     }
 }
 
-/// Nothing but the page's own files is loaded, run or connected to, nothing is kept, nobody else sees it.
+/// Nothing but the page's own files is loaded, run or connected to, nothing is kept, nobody else sees it. No page may hold it
+/// in a frame but those that Visual Studio Code makes itself, which have schemes of their own.
 const HEADERS: &[(&str, &str)] = &[
     (
         "content-security-policy",
         "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; \
-         base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+         base-uri 'none'; form-action 'none'; frame-ancestors vscode-webview: vscode-file:",
     ),
     ("cache-control", "no-store"),
     ("x-content-type-options", "nosniff"),

@@ -1,7 +1,7 @@
 //! The talk with one page.
 //!
 //! A page is told what is new once it has taken what came before, and then only the newest: one that is slow misses what
-//! came in between, and nobody waits for it.
+//! came in between, and nobody waits for it. It is heard all the while: nothing that it says waits behind a picture.
 
 use super::super::hub::{Known, Mask, Request, Status};
 use super::Shared;
@@ -11,22 +11,28 @@ use axum::extract::WebSocketUpgrade;
 use axum::extract::ws::{Message, WebSocket};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
+use futures_util::stream::{SplitSink, SplitStream};
+use futures_util::{SinkExt, StreamExt};
 use rt_lang::scene::Tonemap;
 use rt_lang::units::UNITS;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::sync::Arc;
 use std::time::Duration;
-use tokio::sync::{mpsc, oneshot};
+use tokio::sync::mpsc::{self, OwnedPermit};
+use tokio::sync::oneshot;
 
 /// A page that takes nothing for so long is gone.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Answers that may wait to be sent.
-const ANSWERS: usize = 64;
+/// Questions of a page that are not answered yet. Until one of so many is, no more is heard of it.
+const MOST_ASKED: usize = 64;
 
 /// The page is gone.
 struct Gone;
+
+/// What is sent at the end of a question.
+type Answer = Vec<Message>;
 
 /// Begins the talk, if one more page can be served.
 pub fn answer(shared: Arc<Shared>, upgrade: WebSocketUpgrade) -> Response {
@@ -35,28 +41,31 @@ pub fn answer(shared: Arc<Shared>, upgrade: WebSocketUpgrade) -> Response {
     };
     let upgrade = upgrade.max_message_size(MOST_BYTES).max_frame_size(MOST_BYTES);
     upgrade.on_upgrade(async move |socket| {
-        let (answers, waiting) = mpsc::channel(ANSWERS);
-        let mut talk = Talk { socket, shared, answers, status: None, sent: None };
-        // It ends when the page goes.
-        let _ = talk.go_on(waiting).await;
+        let (mouth, ear) = socket.split();
+        let (answers, waiting) = mpsc::channel(MOST_ASKED);
+        let mut teller = Teller { mouth, shared: shared.clone(), waiting, status: None, sent: None };
+        let mut hearer = Hearer { ear, shared, answers };
+        // Both end only when the page goes.
+        tokio::select! {
+            _ = teller.go_on() => {}
+            _ = hearer.go_on() => {}
+        }
         drop(seat);
     })
 }
 
-struct Talk {
-    socket: WebSocket,
+/// Tells a page what is new.
+struct Teller {
+    mouth: SplitSink<WebSocket, Message>,
     shared: Arc<Shared>,
-    answers: mpsc::Sender<Answer>,
+    waiting: mpsc::Receiver<Answer>,
     /// What the page knows.
     status: Option<Arc<Status>>,
     sent: Option<Sent>,
 }
 
-/// What is sent at the end of a question.
-type Answer = Vec<Message>;
-
-impl Talk {
-    async fn go_on(&mut self, mut waiting: mpsc::Receiver<Answer>) -> Result<(), Gone> {
+impl Teller {
+    async fn go_on(&mut self) -> Result<(), Gone> {
         let mut news = self.shared.hub.subscribe();
         self.send(text(&self.hello())).await?;
         self.tell().await?;
@@ -66,18 +75,7 @@ impl Talk {
                     changed.map_err(|_| Gone)?;
                     self.tell().await?;
                 }
-                message = self.socket.recv() => match message {
-                    Some(Ok(Message::Text(text))) => self.hear(&text).await?,
-                    // Pings are answered by the library.
-                    Some(Ok(Message::Ping(_) | Message::Pong(_))) => {}
-                    Some(Ok(Message::Binary(_))) => self.send(misunderstood("not understood: bytes")).await?,
-                    Some(Ok(Message::Close(_)) | Err(_)) | None => return Err(Gone),
-                },
-                Some(answer) = waiting.recv() => {
-                    for message in answer {
-                        self.send(message).await?;
-                    }
-                }
+                Some(answer) = self.waiting.recv() => self.give(answer).await?,
             }
         }
     }
@@ -115,6 +113,9 @@ impl Talk {
         self.send(text(&begin)).await?;
         for tile in sent.tiles(before.as_ref()) {
             self.send(Message::Binary(tile.into())).await?;
+            while let Ok(answer) = self.waiting.try_recv() {
+                self.give(answer).await?;
+            }
         }
         let end = json!({
             "type": "frame",
@@ -129,36 +130,65 @@ impl Talk {
         Ok(())
     }
 
+    async fn give(&mut self, answer: Answer) -> Result<(), Gone> {
+        for message in answer {
+            self.send(message).await?;
+        }
+        Ok(())
+    }
+
+    async fn send(&mut self, message: Message) -> Result<(), Gone> {
+        match tokio::time::timeout(PATIENCE, self.mouth.send(message)).await {
+            Ok(Ok(())) => Ok(()),
+            _ => Err(Gone),
+        }
+    }
+}
+
+/// Hears what a page says.
+struct Hearer {
+    ear: SplitStream<WebSocket>,
+    shared: Arc<Shared>,
+    answers: mpsc::Sender<Answer>,
+}
+
+impl Hearer {
+    async fn go_on(&mut self) -> Result<(), Gone> {
+        loop {
+            match self.ear.next().await {
+                Some(Ok(Message::Text(text))) => self.hear(&text).await?,
+                // Pings are answered by the library.
+                Some(Ok(Message::Ping(_) | Message::Pong(_))) => {}
+                Some(Ok(Message::Binary(_))) => self.refuse("not understood: bytes").await?,
+                Some(Ok(Message::Close(_)) | Err(_)) | None => return Err(Gone),
+            }
+        }
+    }
+
     /// Does what the page says.
     async fn hear(&mut self, said: &str) -> Result<(), Gone> {
         let hub = &self.shared.hub;
         match heard::read(said) {
-            Err(why) => return self.send(misunderstood(&why)).await,
+            Err(why) => self.refuse(&why).await?,
             Ok(Heard::Set { name, value }) => hub.ask(Request::Set { name, value }),
             Ok(Heard::Crop { window }) => hub.ask(Request::Crop(window)),
             Ok(Heard::Pause { on }) => hub.ask(Request::Pause(on)),
             Ok(Heard::Write { id, name }) => {
-                self.ask(
-                    |reply| Request::Write { name, reply },
-                    move |answer| vec![text(&wrote(id, answer))],
-                );
+                let request = |reply| Request::Write { name, reply };
+                self.ask(request, move |answer| vec![text(&wrote(id, answer))]).await?;
             }
             Ok(Heard::Why { id, x, y, patient }) => {
-                self.ask(
-                    |reply| Request::Why { x, y, patient, reply },
-                    move |answer| vec![text(&why(id, answer))],
-                );
+                let request = |reply| Request::Why { x, y, patient, reply };
+                self.ask(request, move |answer| vec![text(&why(id, answer))]).await?;
             }
             Ok(Heard::Light { id, file, line, column }) => {
-                self.ask(
-                    |reply| Request::Light { file, line, column, reply },
-                    move |mask| lit(id, mask.flatten()),
-                );
+                let request = |reply| Request::Light { file, line, column, reply };
+                self.ask(request, move |answer| lit(id, answer)).await?;
             }
             Ok(Heard::Open { file, line, column }) => {
                 let files = &hub.status().files;
                 if let Err(why) = self.shared.editor.open(&file, line, column, files) {
-                    return self.send(misunderstood(&why)).await;
+                    self.refuse(&why).await?;
                 }
             }
         }
@@ -166,26 +196,31 @@ impl Talk {
     }
 
     /// Asks the engine, and sends what comes of it when it comes.
-    fn ask<T: Send + 'static>(
+    async fn ask<T: Send + 'static>(
         &self,
         request: impl FnOnce(oneshot::Sender<T>) -> Request,
         answer: impl FnOnce(Option<T>) -> Answer + Send + 'static,
-    ) {
+    ) -> Result<(), Gone> {
+        let place = self.place().await?;
         let (reply, coming) = oneshot::channel();
         self.shared.hub.ask(request(reply));
-        let answers = self.answers.clone();
         tokio::spawn(async move {
             let told = answer(coming.await.ok());
-            // The page may be gone.
-            let _ = answers.send(told).await;
+            place.send(told);
         });
+        Ok(())
     }
 
-    async fn send(&mut self, message: Message) -> Result<(), Gone> {
-        match tokio::time::timeout(PATIENCE, self.socket.send(message)).await {
-            Ok(Ok(())) => Ok(()),
-            _ => Err(Gone),
-        }
+    /// Says that something is not done.
+    async fn refuse(&self, why: &str) -> Result<(), Gone> {
+        let refusal = text(&json!({ "type": "error", "message": why }));
+        self.place().await?.send(vec![refusal]);
+        Ok(())
+    }
+
+    /// A place for an answer among those that wait to be sent.
+    async fn place(&self) -> Result<OwnedPermit<Answer>, Gone> {
+        self.answers.clone().reserve_owned().await.map_err(|_| Gone)
     }
 }
 
@@ -201,10 +236,6 @@ struct Named<'a, T> {
 fn text(message: &impl Serialize) -> Message {
     // Maps with keys that are not texts are all that cannot be written, and there are none.
     Message::Text(serde_json::to_string(message).unwrap_or_default().into())
-}
-
-fn misunderstood(message: &str) -> Message {
-    text(&json!({ "type": "error", "message": message }))
 }
 
 /// The engine has ended, or does not do this now.
@@ -227,8 +258,12 @@ fn why(id: u32, answer: Option<Result<Known, String>>) -> Value {
 }
 
 /// The mask follows where there is one.
-fn lit(id: u32, mask: Option<Mask>) -> Answer {
-    let mut answer = vec![text(&json!({ "type": "light", "id": id, "ok": mask.is_some() }))];
-    answer.extend(mask.map(|mask| Message::Binary(tiles::mask(id, &mask).into())));
-    answer
+fn lit(id: u32, answer: Option<Result<Mask, String>>) -> Answer {
+    match answer.unwrap_or_else(|| Err(NO_ANSWER.into())) {
+        Ok(mask) => vec![
+            text(&json!({ "type": "light", "id": id, "ok": true })),
+            Message::Binary(tiles::mask(id, &mask).into()),
+        ],
+        Err(error) => vec![text(&json!({ "type": "light", "id": id, "ok": false, "error": error }))],
+    }
 }

@@ -1,6 +1,6 @@
 //! The secret in the address of the page: who has it may look, and set what the page can set.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Hexadecimal digits of a secret: 128 bits.
 pub const DIGITS: usize = 32;
@@ -12,7 +12,8 @@ pub fn for_port(port: u16) -> Result<String, getrandom::Error> {
         .map(PathBuf::from)
         .filter(|folder| folder.is_absolute())
         .map(|folder| folder.join("rtc").join(format!("token-{port}")));
-    if let Some(token) = kept.as_ref().and_then(|path| std::fs::read_to_string(path).ok())
+    if let Some(token) =
+        kept.as_ref().filter(|path| is_ours_alone(path)).and_then(|path| std::fs::read_to_string(path).ok())
         && is_token(&token)
     {
         return Ok(token);
@@ -32,10 +33,26 @@ pub fn is_token(text: &str) -> bool {
     text.len() == DIGITS && text.bytes().all(|byte| byte.is_ascii_hexdigit())
 }
 
+/// Whether nobody else can have read a file that this user can read, nor written it.
+fn is_ours_alone(path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        std::fs::symlink_metadata(path).is_ok_and(|found| found.is_file() && found.mode() & 0o077 == 0)
+    }
+    #[cfg(not(unix))]
+    path.is_file()
+}
+
 /// Writes a file that only this user can read.
-fn keep(path: &std::path::Path, token: &str) -> std::io::Result<()> {
+fn keep(path: &Path, token: &str) -> std::io::Result<()> {
+    if let Err(error) = std::fs::remove_file(path)
+        && error.kind() != std::io::ErrorKind::NotFound
+    {
+        return Err(error);
+    }
     let mut file = std::fs::OpenOptions::new();
-    file.write(true).create(true).truncate(true);
+    file.write(true).create_new(true);
     #[cfg(unix)]
     {
         use std::os::unix::fs::OpenOptionsExt;

@@ -98,7 +98,8 @@ mod tests {
     #[test]
     fn holes_are_numbered_and_signs_of_snippets_are_escaped() {
         let text = "sphere { radius: 1m } $\\".to_string();
-        let insert = Insert { holes: vec![17..19], text };
+        let holes = std::iter::once(17..19).collect();
+        let insert = Insert { holes, text };
         assert_eq!(snippet_of(&insert), "sphere { radius: ${1:1m} \\} \\$\\\\");
     }
 }

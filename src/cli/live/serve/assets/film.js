@@ -47,8 +47,9 @@ export class Film {
     this.dirty = null;
   }
 
-  fits(size, step, scale) {
-    return this.size[0] === size[0] && this.size[1] === size[1] && this.step === step && this.scale === scale;
+  /// Whether another picture has the same pixels, at whatever scale it came.
+  isLike({ size, step }) {
+    return this.size[0] === size[0] && this.size[1] === size[1] && this.step === step;
   }
 
   /// Takes a tile; what lies outside is left.

@@ -4,11 +4,12 @@
 const STILL = 4;
 const WHEEL = 0.0016;
 
-/// Makes a view follow the hand. `on` has `click(pixel)`, `hover(pixel or null)`, `window(rectangle, done)`.
+/// Makes a view follow the hand. `on` has `click(pixel)`, `hover(pixel or null)`, `window(rectangle, done)`, and
+/// `cropping()`: whether a window is to be dragged.
 export function hold(view, on) {
   const { stage } = view;
   const pointers = new Map();
-  const hand = { dragging: false, cropping: false, from: null, spread: 0 };
+  const hand = { dragging: false, from: null, spread: 0 };
 
   stage.addEventListener("pointerdown", (event) => {
     if (event.button > 1) return;
@@ -28,7 +29,7 @@ export function hold(view, on) {
     const moved = Math.hypot(event.clientX - hand.from[0], event.clientY - hand.from[1]);
     hand.dragging ||= moved > STILL;
     if (!hand.dragging) return;
-    if (hand.cropping && pointers.size === 1) return on.window(rectangle(event), false);
+    if (on.cropping() && pointers.size === 1) return on.window(rectangle(event), false);
     const now = middle(pointers);
     const ratio = devicePixelRatio;
     view.pan((now[0] - before[0]) * ratio, (now[1] - before[1]) * ratio);
@@ -40,7 +41,7 @@ export function hold(view, on) {
     if (!pointers.delete(event.pointerId)) return;
     delete stage.dataset.hand;
     if (event.type === "pointercancel") return;
-    if (hand.cropping && hand.dragging) return on.window(rectangle(event), true);
+    if (on.cropping() && hand.dragging) return on.window(rectangle(event), true);
     const pixel = view.pixel(event.clientX, event.clientY);
     if (!hand.dragging && pixel && event.button === 0) on.click(pixel);
   };
@@ -73,8 +74,6 @@ export function hold(view, on) {
     const box = stage.getBoundingClientRect();
     return [(x - box.left) * devicePixelRatio, (y - box.top) * devicePixelRatio];
   }
-
-  return hand;
 }
 
 function middle(pointers) {

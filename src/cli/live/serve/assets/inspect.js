@@ -1,6 +1,6 @@
 // Why a pixel looks as it does, as `rtc why --json` has it.
 
-import { count, element, figures, part, percent } from "./element.js";
+import { count, element, figures, part, percent, say } from "./element.js";
 import { place } from "./places.js";
 
 const PATHS = {
@@ -14,6 +14,9 @@ const PATHS = {
 /// Characters of a file's name that are shown, where there is more room and less.
 const MOST_NAME = 18;
 const BRIEF_NAME = 10;
+
+/// The least share that is told of.
+const LEAST_SHARE = 0.0005;
 
 /// The panel. `on` has `ask(x, y, patient)` and `mark(pixel or null)`.
 export class Inspector {
@@ -34,7 +37,7 @@ export class Inspector {
     this.on.mark(pixel);
     part("why-close").hidden = false;
     part("side").classList.add("asking");
-    await this.ask();
+    await this.ask(true);
   }
 
   /// Asks again where the picture now shows another text, has twice the samples, or is done.
@@ -44,10 +47,11 @@ export class Inspector {
     const more = done ? samples !== this.samples : samples >= 2 * this.samples && samples > 0;
     if (!this.pixel || (generation === this.generation && !more)) return;
     Object.assign(this, { generation, samples });
-    this.ask();
+    this.ask(false);
   }
 
-  async ask() {
+  /// Asks, and says aloud what comes if it was asked for: what only becomes more exact is not read out again and again.
+  async ask(aloud) {
     const asked = ++this.asked;
     const [x, y] = this.pixel;
     part("why").setAttribute("aria-busy", "true");
@@ -60,6 +64,7 @@ export class Inspector {
       if (answer) {
         part("why").replaceChildren(...(answer.ok ? told(answer.why) : [element("p", { class: "hint" }, answer.error)]));
         part("why").dataset.pixel = `${x},${y}`;
+        if (aloud && !patient) say(part("why-said"), inWords(this.pixel, answer));
       }
       more = answer.more;
     }
@@ -73,8 +78,17 @@ export class Inspector {
     part("why-close").hidden = true;
     part("side").classList.remove("asking");
     delete part("why").dataset.pixel;
+    say(part("why-said"), "");
     part("why").replaceChildren(element("p", { class: "hint" }, "Click a pixel: what it shows, what it is made of, and where its light comes from."));
   }
+}
+
+/// A pixel in a sentence.
+function inWords([x, y], { why, error }) {
+  if (!why) return `Pixel ${x}, ${y}: ${error}`;
+  const [first] = why.shows;
+  const from = why.lights[0];
+  return `Pixel ${x}, ${y} shows ${first ? title(first) : "the background"}${from ? `, lit most by ${title(from)}` : ""}.`;
 }
 
 function told(why) {
@@ -84,7 +98,7 @@ function told(why) {
   return [
     element("dl", { class: "numbers" },
       ...entry("pixel", `${why.pixel[0]}, ${why.pixel[1]}`),
-      ...entry("radiance", `${[r, g, b].map((v) => figures(v)).join("  ")} W/m²`, { "data-radiance": JSON.stringify(why.radiance) }),
+      ...entry("radiance", `${[r, g, b].map((v) => figures(v)).join("  ")} W/(m²·sr)`, { "data-radiance": JSON.stringify(why.radiance) }),
       ...entry("error", why.error == null ? "unknown yet" : `± ${figures(why.error, 3)}${relative}`),
       ...entry("samples", count(why.samples)),
       ...(why.coverage < 1 ? entry("covered", percent(why.coverage)) : []),
@@ -92,6 +106,7 @@ function told(why) {
       ...(why.normal == null ? [] : entry("normal", why.normal.map((v) => v.toFixed(3).replace("-", "−")).join("  ")))),
     element("h3", {}, "Shows"),
     ...(why.shows.length ? why.shows.map(shown) : [element("p", { class: "hint" }, "Nothing but the background.")]),
+    ...rest(why),
     element("h3", {}, "Light from"),
     shares(why.lights, light),
     element("h3", {}, "By paths"),
@@ -111,6 +126,15 @@ function shown(what) {
     element("span", {}, material.name && material.name !== material.kind ? `${material.name} (${material.kind})` : material.kind),
     material.place ? element("span", { class: "at" }, " ", short(material.place)) : null);
   return element("div", { class: "shown" }, head, uses(what.uses), made);
+}
+
+/// What a pixel shows besides the things that are listed.
+function rest({ shows, others, background }) {
+  if (shows.length === 0) return [];
+  const things = others.count === 1 ? "another thing" : `${count(others.count)} other things`;
+  return [[others.share, things], [background, "the background"]]
+    .filter(([share]) => share >= LEAST_SHARE)
+    .map(([share, what]) => element("p", { class: "thing" }, element("span", {}, what), element("span", { class: "share" }, percent(share))));
 }
 
 function title({ kind, number, count: lights }) {

@@ -2,6 +2,7 @@
 
 import { legend } from "./develop.js";
 import { part, say } from "./element.js";
+import { Finder } from "./find.js";
 import { hold } from "./hand.js";
 import { Inspector } from "./inspect.js";
 import { keys } from "./keys.js";
@@ -10,10 +11,13 @@ import { listen, serveEditor } from "./places.js";
 import { showAway, showMessages, showPicture, showStatus, showUnder } from "./said.js";
 import { Link } from "./socket.js";
 import { View } from "./view.js";
+import { Cropper } from "./window.js";
 
 /// What this page was left with, as far as a reload should keep it.
 const kept = JSON.parse(sessionStorage.getItem("look") ?? "{}");
 const state = { place: kept.place, status: null, stops: kept.stops ?? 0, tonemap: kept.tonemap ?? "", show: kept.show ?? "picture", under: null };
+/// The place that is looked at, what there is to say of it, and the pixels of the one that was looked for.
+let [looked, note, found] = [null, null, null];
 
 const view = new View(part("stage"), () => {
   say(part("zoom-fit"), view.fitted ? "fit" : `${Math.round(view.zoom * 100)} %`);
@@ -30,8 +34,23 @@ const inspector = new Inspector({
   ask: (x, y, patient) => link.ask({ type: "why", x, y, patient }),
   mark: (pixel) => {
     view.mark = pixel;
+    state.under = null;
     view.draw();
-    showUnder(view, pixel ?? state.under);
+    showPixel();
+  },
+});
+const cropper = new Cropper(view, {
+  set(window) {
+    link.send({ type: "crop", window });
+    if (state.status) state.status.crop = window;
+  },
+  say: toast,
+});
+const finder = new Finder({
+  ask: (at) => link.ask({ type: "light", ...at }),
+  light(mask) {
+    found = mask;
+    if (!looked) view.light(found);
   },
 });
 const link = new Link({
@@ -46,9 +65,9 @@ const link = new Link({
     showMessages(status, link.film);
     params.update(status.params);
     pointAt(status.cursor);
-    showWindow(status.crop);
+    cropper.update(status.crop);
+    finder.know([status.scene, ...status.files.filter((file) => file !== status.scene)]);
     part("pause").setAttribute("aria-pressed", String(status.paused));
-    showCropping();
     if (link.film) inspector.refresh(link.film, status.state === "done");
   },
   film(film) {
@@ -58,7 +77,8 @@ const link = new Link({
     showPicture(film, state.status);
     showMessages(state.status, film);
     inspector.refresh(film, false);
-    showUnder(view, state.under);
+    finder.refresh(film);
+    showPixel();
   },
   away(why) {
     showAway(why, state.status);
@@ -69,6 +89,11 @@ const link = new Link({
 });
 
 view.wanted = kept.place ?? null;
+
+/// Shows the numbers of the pixel under the pointer, else of the one that is marked.
+function showPixel() {
+  showUnder(view, state.under ?? view.mark, note);
+}
 
 // ---- developing
 
@@ -133,45 +158,16 @@ legend(part("ramp"));
 
 // ---- the hand on the picture
 
-const hand = hold(view, {
+hold(view, {
   click: (pixel) => inspector.look(pixel),
   hover(pixel) {
     state.under = pixel;
-    showUnder(view, pixel);
+    showPixel();
   },
-  window(rectangle, done) {
-    showWindow(rectangle);
-    if (!done) return;
-    hand.cropping = false;
-    crop(rectangle[2] > 0 && rectangle[3] > 0 ? rectangle : null);
-  },
+  cropping: () => cropper.armed,
+  window: (rectangle, done) => cropper.drag(rectangle, done),
 });
-
-function crop(window) {
-  link.send({ type: "crop", window });
-  if (state.status) state.status.crop = window;
-  showWindow(window);
-  showCropping();
-}
-
-function showWindow(window) {
-  if (String(window) === String(view.window)) return;
-  view.window = window;
-  view.draw();
-}
-
-function toggleCrop() {
-  if (state.status?.crop) return crop(null);
-  hand.cropping = !hand.cropping;
-  showCropping();
-}
-
-function showCropping() {
-  part("crop").setAttribute("aria-pressed", String(hand.cropping || Boolean(state.status?.crop)));
-  part("stage").classList.toggle("cropping", hand.cropping);
-}
-
-part("crop").addEventListener("click", toggleCrop);
+part("crop").addEventListener("click", () => cropper.toggle());
 
 // ---- comparing
 
@@ -227,28 +223,32 @@ divider.addEventListener("keydown", (event) => {
 
 // ---- places
 
-let looked = null;
-
-/// Lights up what stands at the cursor of an editor, until the pointer here is at another place.
+/// What stands at the cursor of an editor is what was looked for last.
 let pointed = null;
 async function pointAt(cursor) {
   const name = JSON.stringify(cursor);
   if (name === pointed) return;
   pointed = name;
-  if (looked || !cursor) return;
-  const mask = await link.ask({ type: "light", ...cursor }).catch(() => null);
-  if (name === pointed && !looked) view.light(mask);
+  if (!cursor) return;
+  const answer = await link.ask({ type: "light", ...cursor }).catch((error) => ({ error: error.message }));
+  if (name !== pointed) return;
+  found = answer.error ? null : answer;
+  if (!looked) view.light(found);
 }
 
 listen({
   async look(at) {
     looked = at;
-    const mask = await link.ask({ type: "light", file: at.file, line: at.line, column: at.column }).catch(() => null);
-    if (looked === at) view.light(mask);
+    const answer = await link.ask({ type: "light", file: at.file, line: at.line, column: at.column }).catch((error) => ({ error: error.message }));
+    if (looked !== at) return;
+    note = answer.error ?? null;
+    view.light(note === null ? answer : null);
+    showPixel();
   },
   leave() {
-    looked = null;
-    view.light(null);
+    looked = note = null;
+    view.light(found);
+    showPixel();
   },
   open: (at) => link.send({ type: "open", file: at.file, line: at.line, column: at.column }),
 });
@@ -285,7 +285,7 @@ part("fold").addEventListener("click", () => {
   say(part("fold"), folded ? "Show" : "Hide");
 });
 
-keys(view, inspector, {
+keys(view, inspector, cropper, {
   f: () => view.fit(),
   1: () => view.zoomTo(1),
   "+": () => zoomBy(Math.SQRT2),
@@ -301,15 +301,14 @@ keys(view, inspector, {
   },
   b: pin,
   x: flip,
-  c: toggleCrop,
+  c: () => cropper.toggle(),
   p: pause,
+  "/"() {
+    part("find").focus();
+    part("find").select();
+  },
   "?": () => part("keys").showModal(),
   Escape() {
-    if (hand.cropping) {
-      hand.cropping = false;
-      showCropping();
-    } else {
-      inspector.clear();
-    }
+    if (!cropper.cancel()) inspector.clear();
   },
 });

@@ -5,6 +5,8 @@ import { element, part } from "./element.js";
 /// Milliseconds between values while a slider is dragged.
 const PERIOD = 40;
 
+const GONE = "The file has no such param any more: Reset drops this value.";
+
 /// Units by name: factor and dimension.
 let units = new Map();
 
@@ -72,11 +74,14 @@ class Row {
     this.back = element("button", { type: "button", class: "quiet", title: "As the file says", onclick: () => on.set(param.name, "") }, "Reset");
     this.write = element("button", { type: "button", class: "quiet", title: "Writes this value into the file, as the param's default", onclick: () => on.write(param.name) }, "Write");
     this.actions = element("span", { class: "actions" }, this.back, this.write);
+    // One that the file has not any more can be dropped, and nothing else.
+    const gone = param.default === "";
+    this.write.hidden = this.field.readOnly = gone;
     const range = param.low != null ? `${param.low} to ${param.high}` : "";
     this.root = element("div", { class: "param" },
       element("div", { class: "row" }, element("label", { for: id }, param.name), element("span", { class: "type" }, [param.type, range].filter(Boolean).join(", ")), this.actions),
       element("div", { class: "row" }, this.control?.node, this.field),
-      element("p", { class: "doc", id: `${id}-doc` }, param.doc ?? ""));
+      element("p", { class: "doc", id: `${id}-doc` }, gone ? GONE : (param.doc ?? "")));
   }
 
   same(param) {

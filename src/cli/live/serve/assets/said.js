@@ -89,10 +89,11 @@ function plural(n, word) {
   return `${n} ${word}${n === 1 ? "" : "s"}`;
 }
 
-/// The pixel under the pointer.
-export function showUnder(view, pixel) {
+/// A note, or the pixel under the pointer.
+export function showUnder(view, pixel, note = null) {
+  if (note) return say(part("under"), note);
   if (!pixel || !view.film) return say(part("under"), "");
   const { radiance, error } = view.film.at(...pixel);
   const noise = Number.isFinite(error) ? ` ± ${figures(error, 2)}` : "";
-  say(part("under"), `${pixel[0]}, ${pixel[1]}   ${radiance.map((v) => figures(v)).join("  ")}${noise} W/m²`);
+  say(part("under"), `${pixel[0]}, ${pixel[1]}   ${radiance.map((v) => figures(v)).join("  ")}${noise} W/(m²·sr)`);
 }

@@ -12,6 +12,7 @@ export class Link {
   constructor(told) {
     this.told = told;
     this.film = null;
+    /// A picture that is coming: its shape, and the tiles that are there.
     this.next = null;
     this.asked = new Map();
     this.id = 0;
@@ -62,7 +63,7 @@ export class Link {
         return this.finish(message);
       case "light":
         // Its mask follows.
-        if (!message.ok) this.answer(message.id, null);
+        if (!message.ok) this.answer(message.id, message);
         return;
       case "why":
       case "wrote":
@@ -83,20 +84,24 @@ export class Link {
       const bits = new Uint8Array(buffer, head.at);
       return this.answer(head.id, { size: [head.width, head.height], bits });
     }
-    this.next?.take(head);
+    this.next?.tiles.push(head);
   }
 
-  /// Tiles of a picture of the same shape go into the one there is; it is shown once all are there.
+  /// Tiles wait until all are there: the picture that is shown is a whole one at any time.
   begin({ size, step, scale }) {
-    this.next = this.film?.fits(size, step, scale) ? this.film : new Film(size, step, scale);
+    this.next = { size, step, scale, tiles: [] };
   }
 
-  finish(message) {
+  /// Tiles of a picture of the same shape go into the one there is.
+  finish({ generation, samples, remixed, develop }) {
     if (!this.next) return;
-    const { generation, samples, remixed, develop } = message;
-    this.film = Object.assign(this.next, { generation, samples, remixed, develop });
+    const { size, step, scale, tiles } = this.next;
     this.next = null;
-    this.told.film(this.film);
+    const kept = this.film?.scale === scale && this.film.isLike({ size, step });
+    const film = kept ? this.film : new Film(size, step, scale);
+    for (const tile of tiles) film.take(tile);
+    this.film = Object.assign(film, { generation, samples, remixed, develop });
+    this.told.film(film);
   }
 }
 

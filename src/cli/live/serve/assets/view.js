@@ -47,6 +47,8 @@ export class View {
     this.compare = "split";
     this.flipped = false;
     this.split = 0.5;
+    /// Whether the difference of the two is on the plate.
+    this.differs = false;
     this.plates = { now: new Plate(), pinned: new Plate() };
     this.zoom = 1;
     this.origin = [0, 0];
@@ -102,7 +104,7 @@ export class View {
 
   developNow(all) {
     const paint = painter(this.look);
-    const differs = this.pinned && this.compare === "difference" && this.pinned.fits(this.film.size, this.film.step);
+    const differs = this.compare === "difference" && this.pinned !== null && this.film.isLike(this.pinned);
     const subtract = (film, area, out) => difference(film, this.pinned, area, out, this.look.stops);
     this.plates.now.develop(this.film, differs ? subtract : paint, all || differs !== this.differs);
     if (this.pinned && !differs) this.plates.pinned.develop(this.pinned, paint, all);
@@ -182,6 +184,34 @@ export class View {
     const box = this.stage.getBoundingClientRect();
     const at = [(clientX - box.left) * devicePixelRatio, (clientY - box.top) * devicePixelRatio];
     return at.map((v, i) => (v - this.origin[i]) / this.zoom);
+  }
+
+  /// The pixel in the middle of the picture.
+  middle() {
+    return this.film.size.map((side) => side >> 1);
+  }
+
+  /// The nearest pixel of the picture.
+  inside(pixel) {
+    return pixel.map((v, i) => Math.min(Math.max(v, 0), this.film.size[i] - 1));
+  }
+
+  /// Moves the picture as far as it takes to see a pixel.
+  reveal(pixel) {
+    const margin = 8 * devicePixelRatio;
+    const sides = [this.stage.width, this.stage.height];
+    const by = pixel.map((v, i) => {
+      const at = this.origin[i] + (v + 0.5) * this.zoom;
+      return Math.min(Math.max(at, margin), sides[i] - margin) - at;
+    });
+    if (by.some((v) => v !== 0)) this.pan(...by);
+  }
+
+  /// Draws a window, or none.
+  frame(window) {
+    if (String(window) === String(this.window)) return;
+    this.window = window;
+    this.draw();
   }
 
   /// Where a column of the picture stands on the stage, in its own pixels.

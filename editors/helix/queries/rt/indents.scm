@@ -1,0 +1,15 @@
+[
+  (body)
+  (list)
+  (list_type)
+  (arguments)
+  (parameters)
+  (parenthesized)
+  (tuple)
+] @indent
+
+[
+  "}"
+  "]"
+  ")"
+] @outdent

@@ -1,0 +1,7 @@
+---The language server of rtc, for `vim.lsp.enable('rtc')`.
+---@type vim.lsp.Config
+return {
+  cmd = { 'rtc', 'lsp' },
+  filetypes = { 'rt' },
+  root_markers = { '.git' },
+}

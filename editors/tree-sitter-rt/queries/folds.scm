@@ -1,0 +1,7 @@
+[
+  (body)
+  (list)
+  (arguments)
+  (parameters)
+  (comment)
+] @fold
