@@ -12,6 +12,7 @@
 //! | [`terminal`] | the one writer to standard error |
 //! | [`progress`] | how far a picture is |
 //! | [`trace`] | a picture from beginning to end |
+//! | [`denoise`] | its noise taken out |
 //! | [`keep`], [`shard`] | what of it is kept on the way, and which share of it is made |
 //! | [`live`] | the picture that follows the text |
 //! | [`lsp`] | the language server |
@@ -20,6 +21,7 @@
 mod args;
 mod build;
 mod check;
+mod denoise;
 mod develop;
 mod expand;
 mod explain;

@@ -1,6 +1,7 @@
 //! The binary as its users run it: what it writes where, and how it ends.
 
 mod bad_input;
+mod denoise;
 mod keeping;
 mod layout;
 mod lsp;
