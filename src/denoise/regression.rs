@@ -163,8 +163,8 @@ impl<'f> Fits<'f> {
         at: usize,
     ) -> [f32x8<S>; UNKNOWNS] {
         let mut differences = [f32x8::splat(simd, 1.0); UNKNOWNS];
-        for i in 0..FEATURES {
-            differences[i] = lane(simd, &self.features.planes[i], at) - center[i];
+        for ((difference, plane), center) in differences.iter_mut().zip(&self.features.planes).zip(center) {
+            *difference = lane(simd, plane, at) - *center;
         }
         differences
     }
@@ -197,17 +197,19 @@ impl<'f> Fits<'f> {
                 *slope = f32x8::from_slice(simd, line);
             }
         }
+        let nothing = f32x8::splat(simd, 0.0);
         let corner = y * band.stride + self.tile.x + x;
         for ([dx, dy], weights) in self.weights.each() {
             let Some(weights) = self.weights(simd, weights, at, squarings) else { continue };
             let differences = self.differences(simd, &center, (y + dy) * stride + x + dx);
             let to = corner + dy * band.stride + dx;
-            for c in 0..COLORS {
-                let mut said = slopes[c][FEATURES];
-                for i in 0..FEATURES {
-                    said += slopes[c][i] * differences[i];
+            for (slopes, sums) in slopes.iter().zip(&mut band.sums) {
+                let mut said = slopes[FEATURES];
+                for (slope, difference) in slopes.iter().zip(&differences).take(FEATURES) {
+                    said += *slope * *difference;
                 }
-                add(simd, &mut band.sums[c], to, weights * said);
+                // Beside what is very bright, lines lead below nothing.
+                add(simd, sums, to, weights * said.max(nothing));
             }
             add(simd, &mut band.sums[COLORS], to, weights);
         }
@@ -242,8 +244,8 @@ impl<S: Simd> Sums<S> {
                 self.products[index] += if j < FEATURES { weighted * x[j] } else { weighted };
                 index += 1;
             }
-            for c in 0..COLORS {
-                self.colors[c][i] += weighted * colors[c];
+            for (sums, color) in self.colors.iter_mut().zip(colors) {
+                sums[i] += weighted * *color;
             }
         }
     }
@@ -300,10 +302,10 @@ fn solve(products: &[Lane; PRODUCTS], colors: &[[Lane; UNKNOWNS]; COLORS], k: us
 /// the reciprocals, since it is divided by them again and again.
 fn cholesky(matrix: &[[f64; UNKNOWNS]; UNKNOWNS]) -> [[f64; UNKNOWNS]; UNKNOWNS] {
     let mut root = [[0.0; UNKNOWNS]; UNKNOWNS];
-    for i in 0..UNKNOWNS {
-        for j in 0..=i {
+    for (i, row) in matrix.iter().enumerate() {
+        for (j, entry) in row.iter().enumerate().take(i + 1) {
             let before: f64 = (0..j).map(|k| root[i][k] * root[j][k]).sum();
-            let left = matrix[i][j] - before;
+            let left = entry - before;
             // Rounding may leave less than nothing where features depend on each other.
             root[i][j] = if i == j { 1.0 / left.max(1e-12).sqrt() } else { left * root[j][j] };
         }

@@ -17,7 +17,7 @@ pub(super) struct Kernel {
     pub(super) patch: usize,
     /// How many times the noise two pixels may differ by.
     pub(super) bandwidth: f32,
-    /// Pixels to every side among which each one counts; of those farther away, every other one, as on a chessboard.
+    /// Pixels to every side among which each one counts; of those farther away, every other one.
     pub(super) dense: usize,
 }
 
@@ -28,7 +28,8 @@ impl Kernel {
         let all = (0..side * side).map(|index| [index % side, index / side]);
         let counts = |[x, y]: &[usize; 2]| {
             let distance = x.abs_diff(self.radius).max(y.abs_diff(self.radius));
-            distance <= self.dense || (x + y) % 2 == 0
+            // Not as on a chessboard: then its black fields would know nothing of the white ones.
+            distance <= self.dense || (x + y / 2) % 2 == 0
         };
         all.filter(counts).collect()
     }
@@ -140,8 +141,8 @@ impl<'k> Distances<'k> {
                 let reach = self.reach;
                 let (a, b) = (&values[here..here + reach], &values[there..there + reach]);
                 let (v, w) = (&variances[here..here + reach], &variances[there..there + reach]);
-                for i in 0..reach {
-                    single[i] += distance(a[i] - b[i], v[i], w[i], strictness);
+                for ((((single, a), b), v), w) in single.iter_mut().zip(a).zip(b).zip(v).zip(w) {
+                    *single += distance(a - b, *v, *w, strictness);
                 }
             }
         }
