@@ -114,7 +114,7 @@ fn first_pass(halves: &[Planes; 2], variance: &Planes, features: &[Planes; 2]) -
 fn errors(halves: &[Planes; 2], of_half: &Planes, [a, b]: [&Planes; 2]) -> Vec<f32> {
     let mut errors = vec![0.0; of_half.planes[0].len()];
     for channel in 0..of_half.planes.len() {
-        let plane = |planes: &'_ Planes, index: usize| planes.planes[channel][index];
+        let plane = |planes: &Planes, index: usize| planes.planes[channel][index];
         for (index, error) in errors.iter_mut().enumerate() {
             let (a, b) = (plane(a, index), plane(b, index));
             let (to_a, to_b) = (plane(&halves[1], index) - a, plane(&halves[0], index) - b);

@@ -7,14 +7,14 @@ use std::process::Command;
 
 /// What is measured: its name, the scene, and the size of its picture.
 const SCENES: &[(&str, &str, &str)] = &[
-    ("three balls", "examples/three-balls.rt", "640x360"),
-    ("marbles", "examples/marbles.rt", "640x360"),
-    ("the room", "tests/references/room.rt", "640x360"),
+    ("three balls", "examples/three-balls.rt", "320x240"),
+    ("marbles", "examples/marbles.rt", "320x180"),
+    ("the room", "tests/references/room.rt", "320x240"),
 ];
 /// Samples a pixel.
 const SAMPLES: [u32; 4] = [4, 16, 64, 256];
 /// Those of the truth, which has another seed.
-const TRUTH: u32 = 4096;
+const TRUTH: u32 = 1024;
 
 /// Red, green and blue of each pixel.
 type Pixels = Vec<[f32; 3]>;

@@ -57,7 +57,7 @@ cargo xtask compare [--rounds N] [--budget SECONDS] [SCENE…]
 cargo xtask denoise
 
   renders scenes at few and many samples, and prints how far they are from a converged picture with their noise and without
-  (half an hour on two cores)
+  (some ten minutes on two cores)
 
 cargo xtask latency [ROUNDS]
 
