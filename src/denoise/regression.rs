@@ -20,7 +20,7 @@ const COLORS: usize = 3;
 /// Features that differ less than the root of this do not matter.
 const RIDGE: f64 = 1e-4;
 /// Weights below are none.
-const LEAST_WEIGHT: f32 = 1e-3;
+const LEAST_WEIGHT: f32 = 1e-2;
 
 /// A number of each of several pixels.
 type Lane = [f32; LANES];
