@@ -240,8 +240,8 @@ impl<S: Simd> Sums<S> {
         let mut index = 0;
         for i in 0..UNKNOWNS {
             let weighted = if i < FEATURES { weights * x[i] } else { weights };
-            for j in 0..=i {
-                self.products[index] += if j < FEATURES { weighted * x[j] } else { weighted };
+            for (j, x) in x.iter().enumerate().take(i + 1) {
+                self.products[index] += if j < FEATURES { weighted * *x } else { weighted };
                 index += 1;
             }
             for (sums, color) in self.colors.iter_mut().zip(colors) {
