@@ -25,6 +25,7 @@
 //! | [`expand`] | scene to a flat text of the language | the text it came from |
 //! | [`lint`] | what is probably not meant in a scene | text |
 //! | [`render`] | scene to film; cannot fail | places, files, syntax |
+//! | [`denoise`] | a picture without its noise, by what its pixels show | scenes, how it was traced |
 //! | [`output`] | film to the bytes of image files, and back | files |
 //! | [`aov`] | what a picture shows besides its light, as channels | files |
 //! | [`saved`] | a picture in the making to bytes and back, and shares of one put together | files |
@@ -42,6 +43,7 @@ pub mod aov;
 pub mod change;
 pub mod check;
 pub mod color;
+pub mod denoise;
 pub mod develop;
 pub mod diagnostic;
 pub mod eval;

@@ -2,6 +2,7 @@
 
 use super::animate::{self, has_number};
 use super::args::{Build, Keeping, Resume};
+use super::denoise;
 use super::input::is_standard;
 use super::interrupt::Interrupt;
 use super::messages::{Messenger, on_standard_output};
@@ -123,6 +124,7 @@ fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
     }
     refuse_what_shares_cannot(arguments, &all)?;
     refuse_checkpoints_of_others(arguments)?;
+    denoise::refuse(arguments)?;
     if on_standard_output(&arguments.messages) && all.iter().any(|target| is_standard(&target.path)) {
         let problem = Problem::new("the picture and the messages would both go to standard output");
         return Err(problem.help("write the picture to a file, or use `--message-format short`"));
@@ -255,7 +257,7 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
         Some((subject, making)) => write_share(subject, making, &traced.facts, staged),
         None => {
             let depth = arguments.taking.look.bits;
-            write(&traced.picture, &traced.facts, &traced.channels, depth, staged)
+            write(traced.versions(), &traced.facts, &traced.channels, depth, staged)
         }
     })?;
     // The picture is safe before it is thought about.
@@ -274,6 +276,9 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
     if !arguments.quiet {
         compiled.notes.iter().for_each(|note| terminal.line(note));
         terminal.line(&summary(job, scene, &traced, start.elapsed()));
+        if arguments.denoise && traced.denoised.is_none() {
+            terminal.line("the picture is not denoised: that needs 2 samples a pixel");
+        }
     }
     Ok(exit)
 }
@@ -317,7 +322,11 @@ fn summary(job: &Job, scene: &Scene, traced: &Traced, time: Duration) -> String 
     let names = names(&job.targets);
     let Picture { size: [width, height], .. } = traced.picture;
     let samples = samples(traced);
-    format!("{names}: {width}×{height}, {samples} in {}, {exposure}", duration(time))
+    let denoised = match &traced.denoised {
+        Some(denoised) => format!(", denoised in {} of that", duration(denoised.time)),
+        None => String::new(),
+    };
+    format!("{names}: {width}×{height}, {samples} in {}{denoised}, {exposure}", duration(time))
 }
 
 /// How many samples were taken, what noise they leave, and why no more.
@@ -394,7 +403,7 @@ pub fn make(
     refuse_misfits(std::slice::from_ref(target), from.scene, window)?;
     let staged = target.stage(interrupt)?;
     let Ok(traced) = take(from, window, control.clone()) else { return Ok(None) };
-    write(&traced.picture, &traced.facts, &traced.channels, Depth::Eight, vec![staged]).map(Some)
+    write(traced.versions(), &traced.facts, &traced.channels, Depth::Eight, vec![staged]).map(Some)
 }
 
 /// The exposure where the scene gives none. Two digits, so that the number that is printed gives the very picture when
@@ -403,18 +412,40 @@ pub fn chosen_stops(prepass: &Prepass) -> f64 {
     (prepass.exposure_stops * 100.0).round() / 100.0 + 0.0
 }
 
+/// A picture as it is written.
+#[derive(Clone, Copy)]
+pub struct Versions<'p> {
+    /// As it was traced: that of an EXR.
+    pub traced: &'p Picture,
+    /// Without noise: that of all other formats, and a layer of an EXR.
+    pub denoised: Option<&'p Picture>,
+}
+
+impl<'p> From<&'p Picture> for Versions<'p> {
+    fn from(traced: &'p Picture) -> Versions<'p> {
+        Versions { traced, denoised: None }
+    }
+}
+
 /// Writes every form of a picture, and only then moves them to their places.
-pub fn write(
-    picture: &Picture,
+pub fn write<'p>(
+    versions: impl Into<Versions<'p>>,
     facts: &Facts,
     channels: &Channels,
     depth: Depth,
     mut staged: Vec<Staged>,
 ) -> Result<(), Problem> {
+    let Versions { traced, denoised } = versions.into();
     for file in &mut staged {
         let bytes = match file.target.format {
-            Format::Exr => encode_exr(picture, facts, channels.clone()),
-            format => encode(picture, facts, format, depth),
+            Format::Exr => {
+                let mut channels = channels.clone();
+                if let Some(denoised) = denoised {
+                    denoise::layer(denoised, &mut channels);
+                }
+                encode_exr(traced, facts, channels)
+            }
+            format => encode(denoised.unwrap_or(traced), facts, format, depth),
         };
         let bytes = bytes.map_err(|reason| {
             Problem::new(format!("cannot write {}: {reason}", names(std::slice::from_ref(&file.target))))

@@ -12,6 +12,7 @@
 //! | [`terminal`] | the one writer to standard error |
 //! | [`progress`] | how far a picture is |
 //! | [`trace`] | a picture from beginning to end |
+//! | [`denoise`] | its noise taken out |
 //! | [`animate`] | films, frame by frame |
 //! | [`keep`], [`shard`] | what of it is kept on the way, and which share of it is made |
 //! | [`live`] | the picture that follows the text |
@@ -22,6 +23,7 @@ mod animate;
 mod args;
 mod build;
 mod check;
+mod denoise;
 mod develop;
 mod expand;
 mod explain;

@@ -2,7 +2,8 @@
 
 use super::Problem;
 use super::args::Build;
-use super::build::{Context, chosen_stops};
+use super::build::{Context, Versions, chosen_stops};
+use super::denoise::{self, Denoised};
 use super::keep::{self, Keeper, Places};
 use super::progress::Progress;
 use super::shard;
@@ -18,6 +19,7 @@ use rt_lang::scene::{self, Scene, identity::Identity};
 use rt_lang::why::Provenance;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// What is to be traced.
 pub struct Plan<'a> {
@@ -26,12 +28,15 @@ pub struct Plan<'a> {
     limits: Limits,
     share: Option<Share>,
     places: Option<Places>,
+    denoises: bool,
 }
 
 /// A window of a picture as traced, and what there is to say of it.
 pub struct Traced {
     /// The picture.
     pub picture: Picture,
+    /// The same without noise, if that was asked for and there were samples enough.
+    pub denoised: Option<Denoised>,
     /// How it came about.
     pub facts: Facts,
     /// What is shown beside the light.
@@ -90,7 +95,8 @@ impl<'a> Plan<'a> {
         let share = share(arguments, from.scene)?;
         let limits = limits(arguments, from.scene, share)?;
         let places = keep::places(&arguments.keeping, targets)?;
-        Ok(Plan { from, window, limits, share, places })
+        denoise::refuse_samples(arguments, limits.samples)?;
+        Ok(Plan { from, window, limits, share, places, denoises: arguments.denoise })
     }
 
     /// The same for a frame of a film: see [`Places::yielding`].
@@ -106,6 +112,13 @@ impl<'a> Plan<'a> {
     /// When it is done.
     pub fn limits(&self) -> &Limits {
         &self.limits
+    }
+}
+
+impl Traced {
+    /// The picture to write.
+    pub fn versions(&self) -> Versions<'_> {
+        Versions { traced: &self.picture, denoised: self.denoised.as_ref().map(|denoised| &denoised.picture) }
     }
 }
 
@@ -150,7 +163,7 @@ pub fn trace(
     context.interrupt.watch(control.clone());
     let shown = context.terminal.interactive && !context.arguments.quiet;
     let _progress = shown.then(|| Progress::watch(control.clone(), name.display().to_string()));
-    let Plan { from, window, limits, share, places } = plan;
+    let Plan { from, window, limits, share, places, denoises } = plan;
     let structure = before.as_mut().and_then(|before| before.structure.take());
     let Ok(tracing) = Tracing::new(from, window, limits, share, control, structure) else {
         context.interrupt.wait()
@@ -166,6 +179,9 @@ pub fn trace(
     };
     let reused = before.as_mut().and_then(|before| before.samples(&tracing, window));
     let mut making = tracing.begin(window, kept.or(reused))?;
+    if denoises && !making.is_in_halves() {
+        making = making.in_halves();
+    }
     let limit = match &mut keeper {
         Some(keeper) => tracing.go_on_keeping(&mut making, keeper, context),
         None => tracing.go_on(&mut making, &mut |_| {}),
@@ -266,16 +282,31 @@ impl<'a> Tracing<'a> {
         limit
     }
 
+    /// The picture without noise, if it was traced in halves and every pixel has a sample of each.
+    fn denoised(&self, picture: &Picture, making: &Making) -> Result<Option<Denoised>, Cancelled> {
+        let [least, most] = making.samples();
+        if !making.is_in_halves() || least < denoise::LEAST_SAMPLES {
+            return Ok(None);
+        }
+        let start = Instant::now();
+        let guides =
+            self.tracer.guides(making.film().window(), denoise::guide_samples(most), &self.control)?;
+        Ok(denoise::denoised(picture, making, guides, start))
+    }
+
     fn finish(&self, making: &Making, limit: Limit, aovs: &[Aov]) -> Result<Traced, Cancelled> {
         let (samples, mean_samples) = (making.samples(), making.mean_samples());
         let facts = Facts { limit: Some(limit.word().into()), ..self.facts.clone() };
         let facts = saved::judged(facts, making.film(), samples);
         let film = making.film();
+        let picture = saved::picture(film, &self.subject.identity);
+        let denoised = self.denoised(&picture, &making)?;
         let of_first = aovs.iter().any(|aov| aov.is_of_first_hits());
         let first =
             of_first.then(|| self.tracer.first_hits(film.window(), samples[1], &self.control)).transpose()?;
         Ok(Traced {
-            picture: saved::picture(film, &self.subject.identity),
+            picture,
+            denoised,
             target_met: self
                 .limits
                 .noise

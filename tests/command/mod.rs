@@ -2,6 +2,7 @@
 
 mod animation;
 mod bad_input;
+mod denoise;
 mod keeping;
 mod layout;
 mod lsp;
