@@ -5,12 +5,13 @@ use crate::syntax::{
     self,
     ast::{Body, Construct, Entry, Expr, ExprKind, Path, Statement, StatementKind},
 };
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::ops::Range;
 
 /// Longer texts are not looked through: it would take longer than the change.
 const LONGEST: usize = 1 << 20;
 /// So many are named, at most.
-const MOST: usize = 3;
+const MOST: usize = 16;
 
 /// The names of what is different between two texts: of a field, with what it belongs to; of things, each by its name or
 /// kind. None where the difference lies between things, in comments or layout, or is too large to tell.
@@ -19,26 +20,39 @@ pub fn names(before: &str, after: &str) -> Vec<String> {
         return vec![];
     }
     let (old, new) = (parts(before), parts(after));
-    let same = |(a, b): &(&Part, &Part)| a.text == b.text;
-    let start = old.iter().zip(&new).take_while(same).count();
-    let rest = old.len().min(new.len()) - start;
-    let end = old.iter().rev().zip(new.iter().rev()).take(rest).take_while(same).count();
-    let (old, new) = (&old[start..old.len() - end], &new[start..new.len() - end]);
+    // What stands in both, wherever, is the same.
+    let mut texts: BTreeMap<&str, usize> = BTreeMap::new();
+    new.iter().for_each(|part| *texts.entry(part.text).or_default() += 1);
+    let (kept, gone): (Vec<&Part>, Vec<&Part>) = old.iter().partition(|part| take(&mut texts, part.text));
+    let mut texts: BTreeMap<&str, usize> = BTreeMap::new();
+    kept.iter().for_each(|part| *texts.entry(part.text).or_default() += 1);
+    let come = new.iter().filter(|part| !take(&mut texts, part.text));
+    // Of the rest, what is called the same is the same thing, changed.
+    let mut before: BTreeMap<Vec<String>, VecDeque<&Part>> = BTreeMap::new();
+    gone.into_iter().for_each(|part| before.entry(part.whole()).or_default().push_back(part));
     let mut found = vec![];
-    match (old, new) {
-        _ if old.len() == new.len() => {
-            for (old, new) in old.iter().zip(new).filter(|pair| !same(pair)) {
+    for new in come {
+        let own = new.whole();
+        match before.get_mut(&own).and_then(VecDeque::pop_front) {
+            Some(old) => {
                 let (gone, come) = differing(old.text, new.text);
                 // What is gone has no name in the new text.
                 found.extend(if come.is_empty() { old.named(&gone) } else { new.named(&come) });
             }
+            None => found.extend(own),
         }
-        (gone, []) => found.extend(gone.iter().flat_map(Part::whole)),
-        (_, come) => found.extend(come.iter().flat_map(Part::whole)),
     }
-    found.dedup();
+    found
+        .extend(before.into_iter().flat_map(|(own, parts)| parts.into_iter().flat_map(move |_| own.clone())));
+    let mut named = BTreeSet::new();
+    found.retain(|name| named.insert(name.clone()));
     found.truncate(MOST);
     found
+}
+
+/// Takes one of so many that are counted.
+fn take<'t>(counts: &mut BTreeMap<&'t str, usize>, text: &'t str) -> bool {
+    counts.get_mut(text).filter(|count| **count > 0).map(|count| *count -= 1).is_some()
 }
 
 /// An entry of a file with its text.
@@ -237,7 +251,19 @@ sphere { radius: 2m, at: (0, 1, 0)m } // a ball
     fn what_comes_and_goes_is_named() {
         assert_eq!(changed("sphere { radius: 2m, at: (0, 1, 0)m } ", ""), "sphere");
         assert_eq!(changed("param count", "plane floor {}\nparam count"), "floor");
-        assert_eq!(names("", TEXT), ["camera", "glass", "count"]);
+        assert_eq!(names("", TEXT), ["camera", "glass", "count", "lamp", "for", "sphere"]);
+    }
+
+    #[test]
+    fn only_what_changed_is_named_wherever_it_stands() {
+        let with_clay = TEXT.replace("param count", "material clay = diffuse {}\nparam count");
+        let moved = with_clay.replace("at: (0, 1, 0)m", "material: clay");
+        assert_eq!(names(TEXT, &moved), ["clay", "sphere.material"]);
+        let without =
+            TEXT.replace("param count: int = 7 in 1 to 20\n", "").replace("range(count)", "range(7)");
+        assert_eq!(names(TEXT, &without), ["for", "count"]);
+        let lines: Vec<&str> = TEXT.lines().rev().collect();
+        assert_eq!(names(TEXT, &lines.join("\n")), [""; 0], "in another order");
     }
 
     #[test]

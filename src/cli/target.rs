@@ -20,6 +20,11 @@ pub struct Target {
 }
 
 impl Target {
+    /// Refuses a place where no file can be.
+    pub fn refuse_no_place(&self) -> Result<(), Problem> {
+        if is_standard(&self.path) { Ok(()) } else { place(&self.path).map(drop) }
+    }
+
     /// Reads the value of `-o`: a path, `-` for a PNG on standard output, or `exr:-` and the like.
     pub fn from_argument(path: &Path) -> Result<Target, Problem> {
         if is_standard(path) {
@@ -99,15 +104,8 @@ impl Aside {
     fn make(path: &Path, name: Option<&str>, interrupt: &Interrupt) -> Result<Aside, Problem> {
         let cannot = |reason: String| Problem::new(format!("cannot write `{}`: {reason}", path.display()));
         let existing = fs::metadata(path).ok();
-        if existing.as_ref().is_some_and(|existing| !existing.is_file()) {
-            return Err(cannot("there is something that is not a file".into()));
-        }
-        // Where a link stands, what it points to is replaced, not the link.
-        let place = fs::canonicalize(path).unwrap_or_else(|_| path.into());
-        let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        if !folder.is_dir() {
-            return Err(cannot(format!("there is no folder `{}`", folder.display())));
-        }
+        let place = place(path)?;
+        let folder = folder(&place);
         let made = interrupt.create(|| {
             let mut builder = temporary(existing.map(|existing| existing.permissions()));
             let prefix = name.map(|name| format!(".{name}"));
@@ -179,6 +177,25 @@ pub fn print(bytes: &[u8]) -> Result<(), Problem> {
     let mut stdout = stdout().lock();
     let written = stdout.write_all(bytes).and_then(|()| stdout.flush());
     written.map_err(|error| cannot_write("standard output", &error))
+}
+
+/// The file that is written for a path: where a link stands, what it points to is replaced, not the link.
+fn place(path: &Path) -> Result<PathBuf, Problem> {
+    let cannot = |reason: String| Problem::new(format!("cannot write `{}`: {reason}", path.display()));
+    if fs::metadata(path).is_ok_and(|existing| !existing.is_file()) {
+        return Err(cannot("there is something that is not a file".into()));
+    }
+    let place = fs::canonicalize(path).unwrap_or_else(|_| path.into());
+    let folder = folder(&place);
+    match folder.is_dir() {
+        true => Ok(place),
+        false => Err(cannot(format!("there is no folder `{}`", folder.display()))),
+    }
+}
+
+/// The folder that a file lies in.
+fn folder(place: &Path) -> &Path {
+    place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 fn cannot_write(name: &str, error: &io::Error) -> Problem {

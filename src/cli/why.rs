@@ -5,7 +5,7 @@ use super::info::short;
 use super::target::print;
 use super::terminal::Terminal;
 use super::{Exit, Problem, scene as scenes};
-use rt_lang::diagnostic::{Label, Use};
+use rt_lang::diagnostic::Label;
 use rt_lang::lower::Overrides;
 use rt_lang::render::Tracer;
 use rt_lang::render::apart::Apart;
@@ -143,10 +143,15 @@ fn pointed_at(shown: &Shown, sources: &Sources, style: Style) -> String {
             material.place.as_ref().map_or(" that was chosen".into(), |used| format!(" at {}", at(used)));
         format!("of {named}`{}`{at}", material.kind)
     });
-    let Some((own, uses)) = thing.uses.split_last() else { return message + "\n" };
-    let shown = |used: &Used| Use { span: used.span, turn: used.turn.map(str::to_string) };
-    let uses: Vec<Use> = uses.iter().map(shown).collect();
-    report::remark(&message, &Label { span: own.span, text: made_of }, &uses, sources, style)
+    // The outermost use is the one that is meant; from there it goes inwards.
+    let Some((outermost, inner)) = thing.uses.split_first() else { return message + "\n" };
+    let mut text =
+        report::remark(&message, &Label { span: outermost.span, text: made_of }, &[], sources, style);
+    for used in inner {
+        let turn = used.turn.map_or(String::new(), |turn| format!(", {turn}"));
+        let _ = writeln!(text, "  made at {}{turn}", at(used));
+    }
+    text
 }
 
 fn values(why: &Why) -> String {

@@ -173,6 +173,7 @@ fn nothing_that_a_scene_reads_is_taken_half_written() {
     }
     let said = watching.said();
     assert!(!said.contains("error"), "half of a file was taken for the whole:\n{said}");
+    assert!(said.contains("`paint.png` changed: re-tracing"), "{said}");
     // What stays broken is told.
     desk.put("paint.png", &picture(200)[..40]);
     watching.until("paint.png");
@@ -396,6 +397,7 @@ fn what_cannot_be_followed_is_refused() {
         ("watch -", "standard input does not change"),
         ("watch .", "is a folder"),
         ("watch scene.rt -o -", "cannot go to standard output"),
+        ("watch scene.rt -o none/a.png", "there is no folder `none`"),
         ("watch scene.rt -o scene.rt", "is no format of pictures"),
         ("watch scene.rt --serve=0.0.0.0:80", "can be reached by others"),
         ("watch scene.rt --serve=x", "an address of this machine"),

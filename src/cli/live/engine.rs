@@ -257,9 +257,10 @@ impl Engine {
         }
         let had_errors = self.said.errors > 0;
         self.said = said.clone();
-        let before = self.job.as_ref().map(|job| &job.loaded.sources);
+        let before = self.job.as_ref().map(|job| &job.loaded);
         let mut names = std::mem::take(&mut self.fresh);
-        names.extend(before.iter().flat_map(|before| changed(before, &loaded.sources)));
+        names.extend(before.iter().flat_map(|before| changed(&before.sources, &loaded.sources)));
+        names.extend(before.iter().flat_map(|before| replaced(before, &loaded)));
         let job = Arc::new(Job { generation: self.generation, loaded });
         let notes = job.loaded.compiled.notes.clone();
         let generation = self.generation;
@@ -324,7 +325,8 @@ impl Engine {
     }
 
     fn write_default(&self, name: &str) -> Result<(), String> {
-        const CHANGING: &str = "the scene has errors or is being written: mend it first";
+        const CHANGING: &str =
+            "there are errors, in the scene or in what is set, or it is being written: mend that first";
         let value = self.set.get(name).ok_or_else(|| format!("`{name}` is as the file has it"))?;
         let read = || {
             let cannot = |error: &_| format!("cannot read `{}`: {}", self.scene.display(), plain(error));
@@ -370,6 +372,18 @@ fn shown(path: &Path) -> String {
     let here = std::env::current_dir().ok();
     let below = here.and_then(|here| path.strip_prefix(here).ok().map(Path::to_path_buf));
     below.unwrap_or_else(|| path.into()).display().to_string()
+}
+
+/// The pictures and meshes that hold something else than before.
+fn replaced(before: &Loaded, after: &Loaded) -> Vec<String> {
+    let old: BTreeMap<PathBuf, Option<Arc<[u8]>>> = before.files.held().into_iter().collect();
+    let texts: BTreeSet<&str> = after.sources.iter().map(|(_, source)| source.name.as_str()).collect();
+    let others =
+        after.files.held().into_iter().map(|(path, bytes)| (path.display().to_string(), path, bytes));
+    let others = others.filter(|(name, path, bytes)| {
+        !texts.contains(name.as_str()) && old.get(path).is_some_and(|old| old != bytes)
+    });
+    others.map(|(name, ..)| name).collect()
 }
 
 /// The names of what is different between two readings of a scene.

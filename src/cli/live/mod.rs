@@ -62,12 +62,17 @@ use writer::Writer;
 pub fn run(arguments: &Watch, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
     let targets = outputs(arguments)?;
     let outputs = paths(&targets);
+    if !arguments.quiet {
+        let written =
+            if targets.is_empty() { String::new() } else { format!(", writing {}", build::names(&targets)) };
+        terminal.line(&format!("watching {}{written}", arguments.scene.display()));
+    }
     let Started { hub, requests, desk } = start(arguments, targets, terminal, interrupt)?;
     if let Some(address) = arguments.serve {
         let editor = Editor::new(arguments.editor_url.clone(), arguments.open_with)?;
         show(hub.clone(), Wanted { address, editor }, arguments.open)?;
     }
-    let watcher = watcher(arguments, &hub)?;
+    let watcher = follow_files(arguments, &hub)?;
     let reader = Reader::new(&arguments.scene, &arguments.reading, arguments.taking.overrides(), outputs);
     Engine::new(arguments, reader, watcher, desk, hub, interrupt.clone(), terminal).run(&requests)
 }
@@ -102,7 +107,7 @@ pub fn preview(
     let Started { hub, requests, desk } = start(arguments, vec![], terminal, interrupt)?;
     let address = arguments.serve.ok_or_else(|| Problem::new("there is nothing to serve"))?;
     let url = serve::start(hub.clone(), Wanted { address, editor: Editor::told(tell) })?;
-    let watcher = watcher(arguments, &hub)?;
+    let watcher = follow_files(arguments, &hub)?;
     let reader =
         Reader::new(&arguments.scene, &arguments.reading, arguments.taking.overrides(), vec![]).by(load);
     let engine = Engine::new(arguments, reader, watcher, desk, hub.clone(), interrupt.clone(), terminal);
@@ -157,7 +162,7 @@ fn start(
 }
 
 /// Tells when files may have changed.
-fn watcher(arguments: &Watch, hub: &Arc<Hub>) -> Result<Watcher, Problem> {
+fn follow_files(arguments: &Watch, hub: &Arc<Hub>) -> Result<Watcher, Problem> {
     let told = hub.clone();
     Watcher::new(arguments.poll.map(Duration::from_millis), move || told.ask(Request::Look))
 }
@@ -208,5 +213,6 @@ fn outputs(arguments: &Watch) -> Result<Vec<Target>, Problem> {
     }
     refuse_inputs_as_outputs(std::slice::from_ref(&arguments.scene), &paths(&targets))?;
     refuse_idle_depth(arguments.taking.look.bits, &targets)?;
+    targets.iter().try_for_each(Target::refuse_no_place)?;
     Ok(targets)
 }

@@ -27,7 +27,8 @@ const LOOK: u32 = 8;
 const SOON: u64 = 1 << 18;
 /// Between two pictures that are shown so many times as long is traced as it takes to show one.
 const SHARE: u32 = 10;
-/// And at least so long: a page takes as long to paint one as this to trace, and is to have time for whoever uses it.
+/// And at least so long, unless somebody waits for a window: a page takes as long to paint a picture as this to trace one, and
+/// is to have time for whoever uses it.
 const CALM: Duration = Duration::from_millis(200);
 
 /// What is traced, where it is shown, and where it goes.
@@ -201,6 +202,9 @@ impl<'a> Painting<'a> {
         let Some(change) = &self.change else { return };
         let what = listed(self.names).unwrap_or_else(|| "the text".into());
         let how = match (&change.paths, samples_kept) {
+            (Paths::Kept, true) if change.developed && change.target => {
+                "developed anew, all samples kept, going on".to_string()
+            }
             (Paths::Kept, true) if change.developed => "developed anew, no ray traced again".to_string(),
             (Paths::Kept, true) if change.target => "all samples kept, going on".to_string(),
             (Paths::Kept, true) => "the picture is the same, all samples kept".to_string(),
@@ -278,7 +282,9 @@ impl<'a> Painting<'a> {
                 written = level;
                 let frame = self.show(&mut canvas, true);
                 self.write(frame, None);
-            } else if shown.elapsed() > (SHARE * cost).max(CALM) {
+            } else if shown.elapsed()
+                > (SHARE * cost).max(if first.is_some() { Duration::ZERO } else { CALM })
+            {
                 let start = Instant::now();
                 self.show(&mut canvas, false);
                 (shown, cost) = (Instant::now(), start.elapsed());
@@ -300,6 +306,11 @@ impl<'a> Painting<'a> {
                 let frame = self.frame(look.pixels.clone(), *step, [0, 1], shown, false);
                 self.painter.hub.show(frame);
             }
+            // These were of the picture before.
+            self.painter.hub.say(|status| {
+                (status.samples, status.seconds) = (0, start.elapsed().as_secs_f64());
+                (status.noise, status.left) = (None, None);
+            });
         }
         let film = Film::new(Window::whole(size), prepass.scale);
         let (work, time) = (Work::new(size), start.elapsed());

@@ -13,8 +13,9 @@ pub fn said(diagnostics: &[Diagnostic], sources: &Sources) -> Said {
     let count = |severity| diagnostics.iter().filter(|diagnostic| diagnostic.severity() == severity).count();
     let style = Style { color: false, unicode: true, width: WIDTH };
     let text = report::all(diagnostics, sources, style);
-    let mut places: Vec<Mention> =
-        sources.iter().flat_map(|(_, source)| mentions(&text, &source.name)).collect();
+    // A setting is in no file.
+    let files = sources.iter().filter(|(_, source)| !source.name.starts_with("--set"));
+    let mut places: Vec<Mention> = files.flat_map(|(_, source)| mentions(&text, &source.name)).collect();
     places.sort_by_key(|place| place.start);
     Said { errors: count(Severity::Error), warnings: count(Severity::Warning), text, places }
 }
@@ -52,6 +53,15 @@ fn number(text: &str) -> Option<(usize, &str)> {
     Some((text[..length].parse().ok()?, &text[length..]))
 }
 
+/// What a person is told of names.
+pub fn listed(names: &[String]) -> Option<String> {
+    /// More than anybody reads.
+    const MOST: usize = 3;
+    let quoted: Vec<String> = names.iter().take(MOST).map(|name| format!("`{name}`")).collect();
+    let more = if names.len() > MOST { " and more" } else { "" };
+    (!quoted.is_empty()).then(|| format!("{}{more}", quoted.join(", ")))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -64,13 +74,4 @@ mod tests {
             found.iter().map(|found| (found.line, found.column, found.start, found.end)).collect();
         assert_eq!(places, [(12, 3, 3, 12), (4, 5, 39, 47)]);
     }
-}
-
-/// What a person is told of names.
-pub fn listed(names: &[String]) -> Option<String> {
-    /// More than anybody reads.
-    const MOST: usize = 3;
-    let quoted: Vec<String> = names.iter().take(MOST).map(|name| format!("`{name}`")).collect();
-    let more = if names.len() > MOST { " and more" } else { "" };
-    (!quoted.is_empty()).then(|| format!("{}{more}", quoted.join(", ")))
 }

@@ -48,7 +48,7 @@ await check("a pixel tells what the file holds", {}, async ({ url }, scene) => {
   await page.mouse.move(0, 0);
   const before = String(await shown(page));
   await page.locator("#why .uses .place").first().focus();
-  await until("what stands there is lit up", async () => String(await shown(page)) !== before, 5000);
+  await until("what stands there is lit up", async () => String(await shown(page)) !== before, 20000);
   await keep(page, "why");
   await page.locator("#why .uses .place").first().blur();
   await until("it is as it was", async () => String(await shown(page)) === before, 5000);

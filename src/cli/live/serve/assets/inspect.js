@@ -18,7 +18,7 @@ const BRIEF_NAME = 10;
 /// The least share that is told of.
 const LEAST_SHARE = 0.0005;
 
-/// The panel. `on` has `ask(x, y, patient)` and `mark(pixel or null)`.
+/// The panel. `on` has `ask(x, y, patient)`, `mark(pixel or null)` and `film()`, which is shown now if anything is.
 export class Inspector {
   constructor(on) {
     this.on = on;
@@ -35,6 +35,8 @@ export class Inspector {
   async look(pixel) {
     this.pixel = pixel;
     this.on.mark(pixel);
+    const film = this.on.film();
+    if (film) this.know(film);
     part("why-close").hidden = false;
     part("side").classList.add("asking");
     await this.ask(true);
@@ -42,12 +44,17 @@ export class Inspector {
 
   /// Asks again where the picture now shows another text, has twice the samples, or is done.
   refresh(film, done) {
-    const { generation, step } = film;
-    const samples = step === 1 ? film.samples[0] : 0;
+    const { generation } = film;
+    const samples = samplesOf(film);
     const more = done ? samples !== this.samples : samples >= 2 * this.samples && samples > 0;
     if (!this.pixel || (generation === this.generation && !more)) return;
-    Object.assign(this, { generation, samples });
+    this.know(film);
     this.ask(false);
+  }
+
+  /// This is the picture that is asked about.
+  know(film) {
+    Object.assign(this, { generation: film.generation, samples: samplesOf(film) });
   }
 
   /// Asks, and says aloud what comes if it was asked for: what only becomes more exact is not read out again and again.
@@ -62,7 +69,7 @@ export class Inspector {
       // Another pixel has been chosen since.
       if (asked !== this.asked) return;
       if (answer) {
-        part("why").replaceChildren(...(answer.ok ? told(answer.why) : [element("p", { class: "hint" }, answer.error)]));
+        replace(answer.ok ? told(answer.why) : [element("p", { class: "hint" }, answer.error)]);
         part("why").dataset.pixel = `${x},${y}`;
         if (aloud && !patient) say(part("why-said"), inWords(this.pixel, answer));
       }
@@ -81,6 +88,17 @@ export class Inspector {
     say(part("why-said"), "");
     part("why").replaceChildren(element("p", { class: "hint" }, "Click a pixel: what it shows, what it is made of, and where its light comes from."));
   }
+}
+
+/// The samples that every pixel has.
+const samplesOf = ({ step, samples }) => (step === 1 ? samples[0] : 0);
+
+/// Puts something else into the panel; a place that has the focus keeps it.
+function replace(children) {
+  const places = () => [...part("why").querySelectorAll(".place")];
+  const focused = places().indexOf(document.activeElement);
+  part("why").replaceChildren(...children);
+  places()[focused]?.focus();
 }
 
 /// A pixel in a sentence.

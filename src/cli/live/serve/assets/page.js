@@ -32,6 +32,7 @@ const params = new Params({
 });
 const inspector = new Inspector({
   ask: (x, y, patient) => link.ask({ type: "why", x, y, patient }),
+  film: () => link.film,
   mark: (pixel) => {
     view.mark = pixel;
     state.under = null;

@@ -22,6 +22,7 @@ export function showStatus(status) {
   say(part("left"), status.left == null || status.state === "done" ? "–" : duration(status.left));
   say(part("size"), status.size[0] ? `${status.size[0]} × ${status.size[1]}` : "–");
   part("progress").value = progress(status);
+  say(part("empty"), status.state === "error" ? "No picture before the errors are mended" : "Waiting for the first picture");
   part("notes-section").hidden = status.notes.length === 0;
   if (part("notes").textContent !== status.notes.join("")) {
     part("notes").replaceChildren(...status.notes.map((note) => element("li", {}, note)));
