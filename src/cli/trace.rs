@@ -99,14 +99,20 @@ impl<'a> Plan<'a> {
         Ok(Plan { from, window, limits, share, places, denoises: arguments.denoise })
     }
 
-    /// The same for a frame of a film: see [`Places::yielding`].
+    /// The same for a frame of a film: see [`Places::yielding`]. One to be denoised is kept when it is done, and not before,
+    /// since the halves of its samples cannot be.
     pub fn of_frame(self) -> Plan<'a> {
-        Plan { places: self.places.map(Places::yielding), ..self }
+        Plan { places: self.places.filter(|_| !self.denoises).map(Places::yielding), ..self }
     }
 
     /// What is traced of the picture.
     pub fn window(&self) -> Window {
         self.window
+    }
+
+    /// Whether its noise is taken out.
+    pub fn denoises(&self) -> bool {
+        self.denoises
     }
 
     /// When it is done.
@@ -300,7 +306,7 @@ impl<'a> Tracing<'a> {
         let facts = saved::judged(facts, making.film(), samples);
         let film = making.film();
         let picture = saved::picture(film, &self.subject.identity);
-        let denoised = self.denoised(&picture, &making)?;
+        let denoised = self.denoised(&picture, making)?;
         let of_first = aovs.iter().any(|aov| aov.is_of_first_hits());
         let first =
             of_first.then(|| self.tracer.first_hits(film.window(), samples[1], &self.control)).transpose()?;

@@ -133,14 +133,14 @@ pub fn decode(file: &[u8]) -> Result<(Picture, Facts), CannotDecode> {
 /// The channels of a picture whose noise was taken out, beside the picture as it was traced.
 pub const DENOISED: [&str; 3] = ["denoised.R", "denoised.G", "denoised.B"];
 
-/// The same of the channels [`DENOISED`], with the same alpha; none where there are none.
-pub fn decode_denoised(file: &[u8]) -> Result<Option<(Picture, Facts)>, CannotDecode> {
+/// The picture as a build shows it: that of the channels [`DENOISED`] where there are these, else as [`decode`] has it.
+pub fn decode_shown(file: &[u8]) -> Result<(Picture, Facts), CannotDecode> {
     let meta = refuse_large(file)?;
     let has = |name: &str| {
         let mut channels = meta.headers.iter().flat_map(|header| &header.channels.list);
         channels.any(|channel| channel.name.eq(name))
     };
-    if DENOISED.into_iter().all(has) { decode_colors(file, DENOISED).map(Some) } else { Ok(None) }
+    decode_colors(file, if DENOISED.into_iter().all(has) { DENOISED } else { ["R", "G", "B"] })
 }
 
 /// Reads channels of red, green and blue.

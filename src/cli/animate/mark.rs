@@ -52,6 +52,7 @@ pub fn subject(scene: &Scene, plan: &Plan, aovs: &[Aov], depth: Depth) -> Subjec
         ("tonemap", scene.develop.tonemap.word().to_string()),
         ("bits", if depth == Depth::Sixteen { "16" } else { "8" }.to_string()),
         ("channels", names.join(" ")),
+        ("denoising", if plan.denoises() { "yes" } else { "no" }.to_string()),
     ];
     subject.extend(more.map(|(name, value)| (name.to_string(), value)));
     subject

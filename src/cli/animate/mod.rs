@@ -35,7 +35,7 @@ use rt_lang::check::Moment;
 use rt_lang::diagnostic::Diagnostic;
 use rt_lang::lower::Overrides;
 use rt_lang::output::animation::Reel;
-use rt_lang::output::{Facts, Format, Picture, decode_exr};
+use rt_lang::output::{Facts, Format, Picture, decode_shown};
 use rt_lang::render::Tracer;
 use rt_lang::scene::{Background, Scene};
 use rt_lang::{Compiled, Finding, Options, Series};
@@ -225,7 +225,7 @@ impl Studio<'_, '_> {
         let name = format!("{} {number}/{}", self.orders.scene.display(), self.orders.of);
         let traced =
             threads.install(|| trace(self.context, Path::new(&name), plan, Some(&mut self.before)))?;
-        threads.install(|| build::write(&traced.picture, &traced.facts, &traced.channels, depth, staged))?;
+        threads.install(|| build::write(traced.versions(), &traced.facts, &traced.channels, depth, staged))?;
         if keeping.keeps() {
             mark::record(&subject, &targets, interrupt)?;
             // What is done needs no samples any more.
@@ -237,7 +237,8 @@ impl Studio<'_, '_> {
             let (samples, time) = (build::samples(&traced), duration(start.elapsed()));
             terminal.line(&format!("{}: {samples} in {time}{anew}", self.orders.name(number)));
         }
-        Ok(Shot::Made(traced.picture, traced.facts))
+        let shown = traced.denoised.map_or(traced.picture, |denoised| denoised.picture);
+        Ok(Shot::Made(shown, traced.facts))
     }
 
     /// What is probably not meant in a frame. An exposure that another frame chose may well burn this one out.
@@ -269,6 +270,6 @@ fn read(targets: &[Target]) -> Result<(Picture, Facts), Problem> {
     let exr = targets.iter().find(|target| target.format == Format::Exr);
     let exr = exr.ok_or_else(|| Problem::new("no EXR holds the frame"))?;
     let bytes = input::read_bytes(&exr.path, keep::LARGEST)?;
-    decode_exr(&bytes)
+    decode_shown(&bytes)
         .map_err(|reason| Problem::new(format!("`{}` cannot be read: {reason}", exr.path.display())))
 }
