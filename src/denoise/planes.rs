@@ -4,7 +4,9 @@ use fearless_simd::{Level, Simd, dispatch};
 use rayon::prelude::*;
 
 /// Pixels that are worked on together.
-pub(super) const LANES: usize = 8;
+pub(super) const LANES: usize = 16;
+/// A number of each of these.
+pub(super) type Lane = [f32; LANES];
 /// Columns of a tile, a multiple of [`LANES`].
 const TILE_WIDTH: usize = 32;
 /// Rows of a tile.
@@ -112,10 +114,10 @@ pub(super) struct Cut {
 }
 
 impl Cut {
-    /// Cuts a tile with so many pixels around it, and whole lanes to its right.
+    /// Cuts a tile with so many pixels around it, and whole lanes to its right, with some to spare.
     pub(super) fn of(planes: &Planes, tile: &Tile, margin: usize) -> Cut {
         let [width, height] = planes.size;
-        let stride = (tile.padded() + 2 * margin).next_multiple_of(LANES);
+        let stride = (tile.padded() + 2 * margin).next_multiple_of(LANES) + LANES;
         // Columns before the picture, within it, and behind it.
         let before = margin.saturating_sub(tile.x).min(stride);
         let first = tile.x.saturating_sub(margin);

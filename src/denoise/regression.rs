@@ -5,10 +5,10 @@
 //! (B. Bitterli et al., "Nonlinearly weighted first-order regression for denoising Monte Carlo renderings", 2016, section 5.2).
 
 use super::FEATURES;
-use super::planes::{Cut, LANES, Planes, TILE_HEIGHT, Tile};
+use super::planes::{Cut, LANES, Lane, Planes, TILE_HEIGHT, Tile};
 use super::weights::{Guide, Kernel, Weights};
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, Simd, dispatch, f32x8};
+use fearless_simd::{Level, Simd, dispatch, f32x16};
 use rayon::prelude::*;
 
 /// Unknowns of a fit: one for each feature, and what is there without any.
@@ -22,8 +22,11 @@ const RIDGE: f64 = 1e-4;
 /// Weights below are none.
 const LEAST_WEIGHT: f32 = 1e-2;
 
-/// A number of each of several pixels.
-type Lane = [f32; LANES];
+/// Places whose terms are added together, so that the sums stay in registers meanwhile.
+const TOGETHER: usize = 16;
+
+/// A number of each of several pixels as the fits are solved, for what nearly cancels.
+type Exact = [f64; LANES];
 
 /// Fits the colours of a picture by features, once for each of the bandwidths, which are given as by how many squarings each is
 /// narrower than that of the kernel: each squaring divides it by the root of two.
@@ -135,19 +138,19 @@ impl<'f> Fits<'f> {
 
     /// The weights that some pixels have for a place around them; none where all are too small.
     #[inline(always)]
-    fn weights<S: Simd>(&self, simd: S, weights: &[f32], at: usize, squarings: u32) -> Option<f32x8<S>> {
-        let mut weights = lane(simd, weights, at);
+    fn weights<S: Simd>(&self, simd: S, weights: &Lane, squarings: u32) -> Option<f32x16<S>> {
+        let mut weights = f32x16::from_slice(simd, weights);
         for _ in 0..squarings {
             weights *= weights;
         }
-        weights.simd_gt(f32x8::splat(simd, LEAST_WEIGHT)).any_true().then_some(weights)
+        weights.simd_gt(f32x16::splat(simd, LEAST_WEIGHT)).any_true().then_some(weights)
     }
 
     /// The features of some pixels.
     #[inline(always)]
-    fn center<S: Simd>(&self, simd: S, [x, y]: [usize; 2]) -> [f32x8<S>; FEATURES] {
+    fn center<S: Simd>(&self, simd: S, [x, y]: [usize; 2]) -> [f32x16<S>; FEATURES] {
         let at = (y + self.kernel.radius) * self.features.stride + x + self.kernel.radius;
-        let mut center = [f32x8::splat(simd, 0.0); FEATURES];
+        let mut center = [f32x16::splat(simd, 0.0); FEATURES];
         for (center, plane) in center.iter_mut().zip(&self.features.planes) {
             *center = lane(simd, plane, at);
         }
@@ -159,10 +162,10 @@ impl<'f> Fits<'f> {
     fn differences<S: Simd>(
         &self,
         simd: S,
-        center: &[f32x8<S>; FEATURES],
+        center: &[f32x16<S>; FEATURES],
         at: usize,
-    ) -> [f32x8<S>; UNKNOWNS] {
-        let mut differences = [f32x8::splat(simd, 1.0); UNKNOWNS];
+    ) -> [f32x16<S>; UNKNOWNS] {
+        let mut differences = [f32x16::splat(simd, 1.0); UNKNOWNS];
         for ((difference, plane), center) in differences.iter_mut().zip(&self.features.planes).zip(center) {
             *difference = lane(simd, plane, at) - *center;
         }
@@ -172,17 +175,25 @@ impl<'f> Fits<'f> {
     #[inline(always)]
     fn sums<S: Simd>(&self, simd: S, [x, y]: [usize; 2], squarings: u32) -> Sums<S> {
         let center = self.center(simd, [x, y]);
-        let (stride, at) = (self.features.stride, y * self.tile.padded() + x);
+        let stride = self.features.stride;
         let [red, green, blue] = [0, 1, 2].map(|channel| self.colors.planes[channel].as_slice());
-        let zero = f32x8::splat(simd, 0.0);
+        let zero = f32x16::splat(simd, 0.0);
         let mut sums = Sums { products: [zero; PRODUCTS], colors: [[zero; UNKNOWNS]; COLORS] };
-        for ([dx, dy], weights) in self.weights.each() {
-            let Some(weights) = self.weights(simd, weights, at, squarings) else { continue };
+        let mut terms = [Term { weights: zero, x: [zero; UNKNOWNS], colors: [zero; COLORS] }; TOGETHER];
+        let mut count = 0;
+        for ([dx, dy], weights) in self.weights.around(self.tile, [x, y]) {
+            let Some(weights) = self.weights(simd, weights, squarings) else { continue };
             let there = (y + dy) * stride + x + dx;
             let x = self.differences(simd, &center, there);
             let colors = [lane(simd, red, there), lane(simd, green, there), lane(simd, blue, there)];
-            sums.add(weights, &x, &colors);
+            terms[count] = Term { weights, x, colors };
+            count += 1;
+            if count == TOGETHER {
+                sums.add(simd, &terms);
+                count = 0;
+            }
         }
+        sums.add(simd, &terms[..count]);
         sums
     }
 
@@ -190,17 +201,17 @@ impl<'f> Fits<'f> {
     #[inline(always)]
     fn say<S: Simd>(&self, simd: S, lines: &Lines, [x, y]: [usize; 2], squarings: u32, band: &mut Band) {
         let center = self.center(simd, [x, y]);
-        let (stride, at) = (self.features.stride, y * self.tile.padded() + x);
-        let mut slopes = [[f32x8::splat(simd, 0.0); UNKNOWNS]; COLORS];
+        let stride = self.features.stride;
+        let mut slopes = [[f32x16::splat(simd, 0.0); UNKNOWNS]; COLORS];
         for (slopes, lines) in slopes.iter_mut().zip(&lines.0) {
             for (slope, line) in slopes.iter_mut().zip(lines) {
-                *slope = f32x8::from_slice(simd, line);
+                *slope = f32x16::from_slice(simd, line);
             }
         }
-        let nothing = f32x8::splat(simd, 0.0);
+        let nothing = f32x16::splat(simd, 0.0);
         let corner = y * band.stride + self.tile.x + x;
-        for ([dx, dy], weights) in self.weights.each() {
-            let Some(weights) = self.weights(simd, weights, at, squarings) else { continue };
+        for ([dx, dy], weights) in self.weights.around(self.tile, [x, y]) {
+            let Some(weights) = self.weights(simd, weights, squarings) else { continue };
             let differences = self.differences(simd, &center, (y + dy) * stride + x + dx);
             let to = corner + dy * band.stride + dx;
             for (slopes, sums) in slopes.iter().zip(&mut band.sums) {
@@ -217,54 +228,97 @@ impl<'f> Fits<'f> {
 }
 
 #[inline(always)]
-fn lane<S: Simd>(simd: S, numbers: &[f32], at: usize) -> f32x8<S> {
-    f32x8::from_slice(simd, &numbers[at..at + LANES])
+fn lane<S: Simd>(simd: S, numbers: &[f32], at: usize) -> f32x16<S> {
+    f32x16::from_slice(simd, &numbers[at..at + LANES])
 }
 
 #[inline(always)]
-fn add<S: Simd>(simd: S, numbers: &mut [f32], at: usize, more: f32x8<S>) {
+fn add<S: Simd>(simd: S, numbers: &mut [f32], at: usize, more: f32x16<S>) {
     let numbers = &mut numbers[at..at + LANES];
-    (f32x8::from_slice(simd, numbers) + more).store_slice(numbers);
+    (f32x16::from_slice(simd, numbers) + more).store_slice(numbers);
+}
+
+/// What a place around some pixels has to say to their fits.
+#[derive(Clone, Copy)]
+struct Term<S: Simd> {
+    weights: f32x16<S>,
+    x: [f32x16<S>; UNKNOWNS],
+    colors: [f32x16<S>; COLORS],
 }
 
 /// The normal equations of some pixels' fits. The last unknown is that of the constant.
 struct Sums<S: Simd> {
     /// Of pairs of unknowns, the second not behind the first.
-    products: [f32x8<S>; PRODUCTS],
-    colors: [[f32x8<S>; UNKNOWNS]; COLORS],
+    products: [f32x16<S>; PRODUCTS],
+    colors: [[f32x16<S>; UNKNOWNS]; COLORS],
 }
 
 impl<S: Simd> Sums<S> {
     #[inline(always)]
-    fn add(&mut self, weights: f32x8<S>, x: &[f32x8<S>; UNKNOWNS], colors: &[f32x8<S>; COLORS]) {
-        let mut index = 0;
-        for i in 0..UNKNOWNS {
-            let weighted = if i < FEATURES { weights * x[i] } else { weights };
-            for (j, x) in x.iter().enumerate().take(i + 1) {
-                self.products[index] += if j < FEATURES { weighted * *x } else { weighted };
-                index += 1;
+    fn add(&mut self, simd: S, terms: &[Term<S>]) {
+        const { assert!(UNKNOWNS == 8, "a row for each unknown") };
+        self.add_row::<0>(simd, terms);
+        self.add_row::<1>(simd, terms);
+        self.add_row::<2>(simd, terms);
+        self.add_row::<3>(simd, terms);
+        self.add_row::<4>(simd, terms);
+        self.add_row::<5>(simd, terms);
+        self.add_row::<6>(simd, terms);
+        self.add_row::<7>(simd, terms);
+    }
+
+    /// The products of one unknown with those up to it, and with the colours. Its number is known when this is compiled, so
+    /// that no loop is left but that over the terms.
+    #[inline(always)]
+    fn add_row<const ROW: usize>(&mut self, simd: S, terms: &[Term<S>]) {
+        let zero = f32x16::splat(simd, 0.0);
+        let (mut products, mut colors) = ([zero; UNKNOWNS], [zero; COLORS]);
+        for term in terms {
+            let weighted = term.weights * term.x[ROW];
+            for (sum, x) in products[..=ROW].iter_mut().zip(&term.x) {
+                *sum += weighted * *x;
             }
-            for (sums, color) in self.colors.iter_mut().zip(colors) {
-                sums[i] += weighted * *color;
+            for (sum, color) in colors.iter_mut().zip(&term.colors) {
+                *sum += weighted * *color;
             }
+        }
+        for (sum, more) in self.products[first_of(ROW)..].iter_mut().zip(&products[..=ROW]) {
+            *sum += *more;
+        }
+        for (sums, more) in self.colors.iter_mut().zip(&colors) {
+            sums[ROW] += *more;
         }
     }
 
-    /// Solves by Cholesky's decomposition, pixel by pixel.
+    /// Solves by Cholesky's decomposition. Pixels that only fill up the lanes have no weights and get any lines, which nobody
+    /// weighs either.
     #[inline(always)]
     fn solved(&self) -> Lines {
-        let products: [Lane; PRODUCTS] = self.products.map(stored);
-        let colors: [[Lane; UNKNOWNS]; COLORS] = self.colors.map(|colors| colors.map(stored));
-        let mut lines = Lines([[[0.0; LANES]; UNKNOWNS]; COLORS]);
-        for k in 0..LANES {
-            solve(&products, &colors, k, &mut lines);
+        let total = stored(self.products[PRODUCTS - 1]).map(|v| if v > 0.0 { v } else { 1.0 });
+        let mut matrix = [[[0.0; LANES]; UNKNOWNS]; UNKNOWNS];
+        for (i, row) in matrix.iter_mut().enumerate() {
+            for (j, entry) in row[..=i].iter_mut().enumerate() {
+                *entry = over(&stored(self.products[first_of(i) + j]), &total);
+            }
+            if i < FEATURES {
+                row[i].iter_mut().for_each(|v| *v += RIDGE);
+            }
         }
-        lines
+        let root = cholesky(&matrix);
+        Lines(self.colors.map(|sums| {
+            let solved = substituted(&root, sums.map(|sums| over(&stored(sums), &total)));
+            solved.map(|v| v.map(|v| v as f32))
+        }))
     }
 }
 
+/// Where the products of an unknown begin.
+const fn first_of(row: usize) -> usize {
+    row * (row + 1) / 2
+}
+
 #[inline(always)]
-fn stored<S: Simd>(lane: f32x8<S>) -> Lane {
+fn stored<S: Simd>(lane: f32x16<S>) -> Lane {
     let mut stored = [0.0; LANES];
     lane.store_slice(&mut stored);
     stored
@@ -273,55 +327,58 @@ fn stored<S: Simd>(lane: f32x8<S>) -> Lane {
 /// Slopes along the features, and the colour of the pixel itself, for each channel.
 struct Lines([[Lane; UNKNOWNS]; COLORS]);
 
-/// Solves the equations of one of the pixels.
-fn solve(products: &[Lane; PRODUCTS], colors: &[[Lane; UNKNOWNS]; COLORS], k: usize, lines: &mut Lines) {
-    let total = f64::from(products[PRODUCTS - 1][k]);
-    // Pixels that only fill up the lanes.
-    if total <= 0.0 {
-        return;
+#[inline(always)]
+fn over(sums: &Lane, total: &Lane) -> Exact {
+    let mut shares = [0.0; LANES];
+    for ((share, sum), total) in shares.iter_mut().zip(sums).zip(total) {
+        *share = f64::from(*sum) / f64::from(*total);
     }
-    let mut matrix = [[0.0f64; UNKNOWNS]; UNKNOWNS];
-    let mut index = 0;
-    for (i, row) in matrix.iter_mut().enumerate() {
-        for entry in &mut row[..=i] {
-            *entry = f64::from(products[index][k]) / total;
-            index += 1;
-        }
-        row[i] += if i < FEATURES { RIDGE } else { 0.0 };
-    }
-    let root = cholesky(&matrix);
-    for (line, sums) in lines.0.iter_mut().zip(colors) {
-        let sums = std::array::from_fn(|i| f64::from(sums[i][k]) / total);
-        for (slope, solved) in line.iter_mut().zip(substituted(&root, sums)) {
-            slope[k] = solved as f32;
-        }
-    }
+    shares
 }
 
-/// The lower triangle whose product with its transpose is a symmetric matrix, of which the lower half counts. On the diagonal are
-/// the reciprocals, since it is divided by them again and again.
-fn cholesky(matrix: &[[f64; UNKNOWNS]; UNKNOWNS]) -> [[f64; UNKNOWNS]; UNKNOWNS] {
-    let mut root = [[0.0; UNKNOWNS]; UNKNOWNS];
+/// What is left of a number without some products.
+#[inline(always)]
+fn without<'p>(mut left: Exact, products: impl Iterator<Item = (&'p Exact, &'p Exact)>) -> Exact {
+    for (a, b) in products {
+        left.iter_mut().zip(a).zip(b).for_each(|((left, a), b)| *left -= a * b);
+    }
+    left
+}
+
+#[inline(always)]
+fn times(mut a: Exact, b: &Exact) -> Exact {
+    a.iter_mut().zip(b).for_each(|(a, b)| *a *= b);
+    a
+}
+
+/// The lower triangles whose products with their transposes are symmetric matrices, of which the lower halves count. On the
+/// diagonal are the reciprocals, since it is divided by them again and again.
+#[inline(always)]
+fn cholesky(matrix: &[[Exact; UNKNOWNS]; UNKNOWNS]) -> [[Exact; UNKNOWNS]; UNKNOWNS] {
+    let mut root = [[[0.0; LANES]; UNKNOWNS]; UNKNOWNS];
     for (i, row) in matrix.iter().enumerate() {
-        for (j, entry) in row.iter().enumerate().take(i + 1) {
-            let before: f64 = (0..j).map(|k| root[i][k] * root[j][k]).sum();
-            let left = entry - before;
-            // Rounding may leave less than nothing where features depend on each other.
-            root[i][j] = if i == j { 1.0 / left.max(1e-12).sqrt() } else { left * root[j][j] };
+        for (j, entry) in row[..=i].iter().enumerate() {
+            let left = without(*entry, root[i][..j].iter().zip(&root[j][..j]));
+            root[i][j] = if i == j {
+                // Rounding may leave less than nothing where features depend on each other.
+                left.map(|left| 1.0 / left.max(1e-12).sqrt())
+            } else {
+                times(left, &root[j][j])
+            };
         }
     }
     root
 }
 
-/// The solution of the equations whose matrix has this root.
-fn substituted(root: &[[f64; UNKNOWNS]; UNKNOWNS], mut v: [f64; UNKNOWNS]) -> [f64; UNKNOWNS] {
+/// The solutions of the equations whose matrices have these roots.
+#[inline(always)]
+fn substituted(root: &[[Exact; UNKNOWNS]; UNKNOWNS], mut v: [Exact; UNKNOWNS]) -> [Exact; UNKNOWNS] {
     for i in 0..UNKNOWNS {
-        let before: f64 = (0..i).map(|k| root[i][k] * v[k]).sum();
-        v[i] = (v[i] - before) * root[i][i];
+        v[i] = times(without(v[i], root[i][..i].iter().zip(&v[..i])), &root[i][i]);
     }
     for i in (0..UNKNOWNS).rev() {
-        let behind: f64 = (i + 1..UNKNOWNS).map(|k| root[k][i] * v[k]).sum();
-        v[i] = (v[i] - behind) * root[i][i];
+        let column = root[i + 1..].iter().map(|row| &row[i]);
+        v[i] = times(without(v[i], column.zip(&v[i + 1..])), &root[i][i]);
     }
     v
 }

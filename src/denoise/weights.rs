@@ -2,7 +2,9 @@
 //! algorithms, with a new one", 2005), with the distances for noise that differs from pixel to pixel (F. Rousselle, C. Knaus
 //! and M. Zwicker, "Adaptive rendering with non-local means filtering", 2012, section 4).
 
-use super::planes::{Cut, Planes, Tile, vectorized};
+use super::planes::{Cut, LANES, Lane, Planes, Tile, vectorized};
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch, f32x16};
 use rayon::prelude::*;
 
 /// Variance that is nothing, of numbers about 1: below it, differences count as they are.
@@ -46,11 +48,9 @@ pub(super) struct Guide<'g> {
 /// The weight of every pixel around each one of a tile, from 0 to 1.
 pub(super) struct Weights {
     /// The places, as [`Kernel::places`] has them.
-    pub(super) places: Vec<[usize; 2]>,
-    /// Pixel by pixel of the tile, its rows in whole lanes, for one place after the other.
-    values: Vec<f32>,
-    /// Numbers of a place.
-    area: usize,
+    places: Vec<[usize; 2]>,
+    /// For some pixels of a row after the others, those of all places.
+    values: Vec<Lane>,
 }
 
 impl Weights {
@@ -58,21 +58,29 @@ impl Weights {
     pub(super) fn of(guide: &Guide, tile: &Tile, kernel: &Kernel) -> Weights {
         let mut distances = Distances::new(guide, tile, kernel);
         let (places, area) = (kernel.places(), tile.padded() * tile.height);
-        let mut values = vec![0.0; places.len() * area];
-        for (place, values) in places.iter().zip(values.chunks_exact_mut(area)) {
-            vectorized(
+        let mut values = vec![[0.0; LANES]; places.len() * area / LANES];
+        let mut weights = vec![0.0; area];
+        for (index, place) in places.iter().enumerate() {
+            dispatch!(Level::new(), simd => simd.vectorize(
                 #[inline(always)]
-                || distances.weigh(*place, values),
-            );
-            clear_outside(values, tile, kernel, guide.values.size, *place);
+                || distances.weigh(simd, *place, &mut weights),
+            ));
+            clear_outside(&mut weights, tile, kernel, guide.values.size, *place);
+            let lanes = weights.as_chunks().0.iter();
+            lanes.zip(values[index..].iter_mut().step_by(places.len())).for_each(|(lane, to)| *to = *lane);
         }
-        Weights { places, values, area }
+        Weights { places, values }
     }
 
-    /// The places with the weights of all pixels for them.
+    /// The places with the weights that the pixels from this one on have for them; its column is one where lanes begin.
     #[inline(always)]
-    pub(super) fn each(&self) -> impl Iterator<Item = ([usize; 2], &[f32])> {
-        self.places.iter().copied().zip(self.values.chunks_exact(self.area))
+    pub(super) fn around(
+        &self,
+        tile: &Tile,
+        [x, y]: [usize; 2],
+    ) -> impl Iterator<Item = ([usize; 2], &Lane)> {
+        let start = (y * tile.padded() + x) / LANES * self.places.len();
+        self.places.iter().copied().zip(&self.values[start..])
     }
 }
 
@@ -101,8 +109,8 @@ struct Distances<'k> {
     kernel: &'k Kernel,
     values: Cut,
     variances: Cut,
-    /// Columns and rows of the tile, and columns with those of patches.
-    size: [usize; 2],
+    /// Columns of the tile, and with those of patches, up to whole lanes.
+    columns: usize,
     reach: usize,
     /// Of single pixels, and their sums along rows of patches.
     single: Vec<f32>,
@@ -115,13 +123,14 @@ impl<'k> Distances<'k> {
         let mut variances = Cut::of(guide.variances, tile, margin);
         // What is not a number would spread.
         variances.planes.iter_mut().flatten().for_each(|v| *v = v.max(0.0));
-        let (columns, reach) = (tile.padded(), tile.padded() + 2 * kernel.patch);
+        let columns = tile.padded();
+        let reach = (columns + 2 * kernel.patch).next_multiple_of(LANES);
         let rows = tile.height + 2 * kernel.patch;
         Distances {
             kernel,
             values: Cut::of(guide.values, tile, margin),
             variances,
-            size: [columns, tile.height],
+            columns,
             reach,
             single: vec![0.0; rows * reach],
             along: vec![0.0; rows * columns],
@@ -130,7 +139,7 @@ impl<'k> Distances<'k> {
 
     /// The weights of the pixels at a place.
     #[inline(always)]
-    fn weigh(&mut self, [dx, dy]: [usize; 2], weights: &mut [f32]) {
+    fn weigh<S: Simd>(&mut self, simd: S, [dx, dy]: [usize; 2], weights: &mut [f32]) {
         let Kernel { radius, patch, bandwidth, .. } = *self.kernel;
         let strictness = 1.0 / (bandwidth * bandwidth);
         let stride = self.values.stride;
@@ -146,30 +155,31 @@ impl<'k> Distances<'k> {
                 }
             }
         }
-        let columns = self.size[0];
+        let (columns, across) = (self.columns, 2 * patch + 1);
         for (single, along) in self.single.chunks_exact(self.reach).zip(self.along.chunks_exact_mut(columns))
         {
-            along.copy_from_slice(&single[..columns]);
-            for step in 1..=2 * patch {
-                for (sum, v) in along.iter_mut().zip(&single[step..]) {
-                    *sum += v;
-                }
-            }
+            sum(simd, single, 1, across, along);
         }
-        let across = (2 * patch + 1) as f32;
-        let share = 1.0 / (across * across * self.values.planes.len() as f32);
+        let share = 1.0 / ((across * across * self.values.planes.len()) as f32);
         for (y, weights) in weights.chunks_exact_mut(columns).enumerate() {
-            weights.copy_from_slice(&self.along[y * columns..][..columns]);
-            for step in 1..=2 * patch {
-                let along = &self.along[(y + step) * columns..][..columns];
-                for (sum, v) in weights.iter_mut().zip(along) {
-                    *sum += v;
-                }
-            }
+            sum(simd, &self.along[y * columns..], columns, across, weights);
             for weight in weights {
                 *weight = fade(*weight * share);
             }
         }
+    }
+}
+
+/// The sums of so many numbers a step apart, each from its own place on.
+#[inline(always)]
+fn sum<S: Simd>(simd: S, numbers: &[f32], step: usize, count: usize, sums: &mut [f32]) {
+    for (index, sums) in sums.chunks_exact_mut(LANES).enumerate() {
+        let lane = |at: usize| f32x16::from_slice(simd, &numbers[index * LANES + at * step..][..LANES]);
+        let mut sum = lane(0);
+        for at in 1..count {
+            sum += lane(at);
+        }
+        sum.store_slice(sums);
     }
 }
 
@@ -220,24 +230,22 @@ pub(super) fn means(planes: &Planes, guide: &Guide, kernel: &Kernel) -> Planes {
 #[inline(always)]
 fn tile_means(planes: &Planes, tile: &Tile, kernel: &Kernel, weights: &Weights) -> Vec<Vec<f32>> {
     let cut = Cut::of(planes, tile, kernel.radius);
-    let (columns, area) = (tile.padded(), tile.padded() * tile.height);
-    let mut total = vec![0.0f32; area];
-    let mut sums = vec![vec![0.0f32; area]; cut.planes.len()];
-    for ([dx, dy], at) in weights.each() {
-        total.iter_mut().zip(at).for_each(|(total, weight)| *total += weight);
-        for (sum, plane) in sums.iter_mut().zip(&cut.planes) {
-            for (y, (sum, weight)) in sum.chunks_exact_mut(columns).zip(at.chunks_exact(columns)).enumerate()
-            {
-                let there = &plane[(y + dy) * cut.stride + dx..][..columns];
-                for ((sum, weight), v) in sum.iter_mut().zip(weight).zip(there) {
-                    *sum += weight * v;
-                }
+    let starts = (0..tile.height).flat_map(|y| (0..tile.padded()).step_by(LANES).map(move |x| [x, y]));
+    let mut means = vec![Vec::with_capacity(tile.padded() * tile.height); cut.planes.len()];
+    for [x, y] in starts {
+        let mut total = [0.0f32; LANES];
+        for (_, weights) in weights.around(tile, [x, y]) {
+            total.iter_mut().zip(weights).for_each(|(total, weight)| *total += weight);
+        }
+        for (means, plane) in means.iter_mut().zip(&cut.planes) {
+            let mut sum = [0.0f32; LANES];
+            for ([dx, dy], weights) in weights.around(tile, [x, y]) {
+                let there = &plane[(y + dy) * cut.stride + x + dx..][..LANES];
+                sum.iter_mut().zip(weights).zip(there).for_each(|((sum, weight), v)| *sum += weight * v);
             }
+            // A pixel is always like itself, but for those that fill up lanes.
+            means.extend(sum.iter().zip(&total).map(|(sum, total)| sum / total.max(f32::MIN_POSITIVE)));
         }
     }
-    for sum in &mut sums {
-        // A pixel is always like itself, but for those that fill up lanes.
-        sum.iter_mut().zip(&total).for_each(|(sum, total)| *sum /= total.max(f32::MIN_POSITIVE));
-    }
-    sums
+    means
 }
