@@ -35,8 +35,11 @@ pub fn refuse(arguments: &Build) -> Result<(), Problem> {
     }
     let keeps = arguments.keeping.keeps();
     let (flag, help) = match arguments.keeping.shard {
-        Some(_) => ("--shard", "the halves of the samples that it compares are not kept in shares"),
-        None if keeps => ("--checkpoint", "the halves of the samples that it compares are not kept there"),
+        Some(_) => (
+            "--shard",
+            "it compares two halves of the samples, which are not kept in shares; `rtc merge` makes the noisy picture of them",
+        ),
+        None if keeps => ("--checkpoint", "it compares two halves of the samples, which are not kept there"),
         None => return Ok(()),
     };
     Err(Problem::new(format!("`--denoise` and `{flag}` do not go together")).help(help))

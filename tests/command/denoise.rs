@@ -1,6 +1,6 @@
 //! Pictures without noise.
 
-use super::{Desk, Ended, assert_same};
+use super::{Desk, Ended, assert_same, ended};
 use exr::prelude::*;
 use std::collections::BTreeMap;
 
@@ -109,4 +109,32 @@ fn it_says_what_it_does_not_go_with() {
     refused("--denoise --resume -o a.png", &["`--denoise` and `--checkpoint` do not go together"]);
     refused("--denoise --samples 1 -o a.png", &["`--denoise` needs 2 samples a pixel"]);
     assert!(!desk.names().iter().any(|name| name.starts_with("a.")));
+}
+
+#[test]
+fn frames_of_a_film_are_denoised() {
+    let desk = desk();
+    desk.put(
+        "pots.rt",
+        POTS.replace("from: (0, 1, 5)m", "from: (t, 1, 5)m, exposure: 0") + "param t: length = 0\n",
+    );
+    let film = |rest: &str| {
+        let mut command = desk.command("build pots.rt --size 48x36 --samples 5 --frames 2 --resume");
+        command.args(["--sweep", "t = 0 to 1m"]).args(rest.split_whitespace());
+        ended(command.output().unwrap())
+    };
+    film("--denoise -o f{}.exr -o f{}.png -o film.webp").expect(0, &["f2.exr, f2.png, frame 2 of 2"]);
+    build(&desk, "-q --samples 5 --set t=1m --denoise -o one.exr -o one.png").expect(0, &[]);
+    assert_same(&desk.path("one.exr"), &desk.path("f2.exr"));
+    assert_same(&desk.path("one.png"), &desk.path("f2.png"));
+    assert!(channels(&desk.get("f1.exr")).contains_key("denoised.G"));
+
+    // Those that are done are taken, without noise too, and never for those with noise.
+    film("--denoise -o f{}.exr -o f{}.png -o again.webp")
+        .expect(0, &["frame 1 of 2 is done", "frame 2 of 2 is done"]);
+    assert_same(&desk.path("film.webp"), &desk.path("again.webp"));
+    film("-o f{}.exr -o f{}.png -o noisy.webp")
+        .expect(0, &["made anew: it differs in its denoising (yes, not no)"]);
+    assert!(!channels(&desk.get("f1.exr")).contains_key("denoised.G"));
+    assert!(desk.get("film.webp") != desk.get("noisy.webp"));
 }

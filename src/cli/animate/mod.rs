@@ -225,7 +225,8 @@ impl Studio<'_, '_> {
         let name = format!("{} {number}/{}", self.orders.scene.display(), self.orders.of);
         let traced =
             threads.install(|| trace(self.context, Path::new(&name), plan, Some(&mut self.before)))?;
-        threads.install(|| build::write(traced.versions(), &traced.facts, &traced.channels, depth, staged))?;
+        threads
+            .install(|| build::write(traced.versions(), &traced.facts, &traced.channels, depth, staged))?;
         if keeping.keeps() {
             mark::record(&subject, &targets, interrupt)?;
             // What is done needs no samples any more.
