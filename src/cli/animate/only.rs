@@ -81,7 +81,7 @@ mod tests {
         assert_eq!(ask(Only::Auto, &[("JOB_COMPLETION_INDEX", "0")]), Ok(vec![1]));
         assert!(ask(Only::Auto, &slurm("49")).is_err() && ask(Only::Auto, &slurm("0")).is_err());
         assert!(ask(Only::Auto, &[]).is_err_and(|why| why.contains("no scheduler")));
-        let of_five = |run: &str| ask(Only::AutoOf(5), &slurm(run)).unwrap();
+        let of_five = |run: &'static str| ask(Only::AutoOf(5), &slurm(run)).unwrap();
         let all: Vec<u32> = ["1", "2", "3", "4", "5"].into_iter().flat_map(of_five).collect();
         assert_eq!(all, (1..=48).collect::<Vec<u32>>(), "each frame in one run");
         assert!(ask(Only::AutoOf(49), &slurm("1")).is_err() && ask(Only::AutoOf(5), &slurm("6")).is_err());
