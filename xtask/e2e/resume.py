@@ -49,7 +49,7 @@ def kills(samples):
                 time.sleep(0.001)
             time.sleep(random.uniform(0, 0.03))
         else:
-            time.sleep(random.uniform(0, 1.2))
+            time.sleep(random.uniform(0, 0.6))
         child.send_signal(signal.SIGKILL)
         said = child.communicate()[1]
         if child.returncode != -signal.SIGKILL:

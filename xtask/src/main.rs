@@ -75,7 +75,7 @@ cargo xtask lsp
 
 cargo xtask e2e [STEP…]
 
-  terminal   progress on a pseudo-terminal, and Ctrl-C within 100 ms
+  terminal   progress on a pseudo-terminal, and Ctrl-C
   full-disk  a disk that fills up while a picture is written
   resume     a build that is killed 200 times and goes on, to the same bytes; signals, and a full disk (minutes)
   farm       four workers of a real Slurm, one of them lost midway (slurmctld, slurmd and munge, of Debian; as root)
@@ -146,11 +146,11 @@ fn e2e(wanted: &[String]) -> Outcome {
             Ok(()) => println!("e2e {name}: passed in {:.1} s", start.elapsed().as_secs_f64()),
             Err(why) => {
                 println!("e2e {name}: FAILED: {why}");
-                failed.push(*name);
+                failed.push(format!("{name}: {why}"));
             }
         }
     }
-    if failed.is_empty() { Ok(()) } else { Err(format!("e2e failed: {}", failed.join(", "))) }
+    if failed.is_empty() { Ok(()) } else { Err(format!("e2e failed:\n{}", failed.join("\n"))) }
 }
 
 /// The pictures that the README shows, beside the figures of the report: scene and size.
