@@ -7,7 +7,7 @@ use rt_lang::eval::{Limits, Thing, Things, eval};
 use rt_lang::files::{FileError, FilePath, Files};
 use rt_lang::import::import;
 use rt_lang::lint::lint;
-use rt_lang::lower::{Lowered, Meshes, Overrides, lower, measure};
+use rt_lang::lower::{Decoded, Lowered, Meshes, Overrides, lower, measure};
 use rt_lang::source::{Source, Sources};
 use rt_lang::{Options, compile};
 use scenes::Numbers;
@@ -96,6 +96,7 @@ struct Checked {
     files: OneFile,
     sources: Sources,
     program: Program,
+    decoded: Decoded,
 }
 
 impl Checked {
@@ -106,11 +107,11 @@ impl Checked {
         let imported = import(&files, &mut sources, main, Limits::default().levels, Limits::default().text);
         let (program, diagnostics) = check(&files, &sources, &imported, &[]);
         assert_eq!(diagnostics, []);
-        Checked { files, sources, program }
+        Checked { files, sources, program, decoded: Decoded::default() }
     }
 
     fn meshes(&self) -> Meshes<'_> {
-        Meshes::new(&self.files, &self.sources)
+        Meshes::new(&self.files, &self.sources, &self.decoded)
     }
 
     fn things(&self, meshes: &Meshes) -> Things {

@@ -25,6 +25,7 @@
 //! | [`expand`] | scene to a flat text of the language | the text it came from |
 //! | [`lint`] | what is probably not meant in a scene | text |
 //! | [`render`] | scene to film; cannot fail | places, files, syntax |
+//! | [`denoise`] | a picture without its noise, by what its pixels show | scenes, how it was traced |
 //! | [`output`] | film to the bytes of image files, and back | files |
 //! | [`aov`] | what a picture shows besides its light, as channels | files |
 //! | [`saved`] | a picture in the making to bytes and back, and shares of one put together | files |
@@ -42,6 +43,7 @@ pub mod aov;
 pub mod change;
 pub mod check;
 pub mod color;
+pub mod denoise;
 pub mod develop;
 pub mod diagnostic;
 pub mod eval;
@@ -69,14 +71,14 @@ pub mod syntax;
 pub mod units;
 pub mod why;
 
-use check::{Program, Setting};
+use check::{Moment, Program, Setting};
 use diagnostic::{Code, Diagnostic};
 use eval::{Limits, Origins, Thing, Things};
 use files::{Contents, Files};
 use ide::{Analysis, Stop, Study};
 use import::Imported;
 use inventory::Inventory;
-use lower::{Lowered, Marks, Meshes, Overrides, Places};
+use lower::{Decoded, Lowered, Marks, Meshes, Overrides, Places};
 use render::feedback::Feedback;
 use scene::Scene;
 use source::{Source, Sources};
@@ -115,6 +117,10 @@ pub struct Options {
     pub overrides: Overrides,
     /// Values for params of the file, each as `name=value`.
     pub set: Vec<String>,
+    /// Values that change through a film, each as `name = a to b` or `name = a until b`.
+    pub sweep: Vec<String>,
+    /// Which of its frames is compiled.
+    pub moment: Moment,
     /// What reading and evaluating may take.
     pub limits: Limits,
 }
@@ -147,9 +153,52 @@ fn run(
     stop: Option<Stop>,
 ) -> (Compiled, Study) {
     let imported = import::import(files, sources, main, options.limits.levels, options.limits.text);
-    let (settings, slips) = check::settings(sources, &options.set);
-    let world = World { files, sources, main, options, stop };
-    stack::deep(move || world.stages(imported, settings, slips))
+    let settings = settings(sources, options);
+    let decoded = &Decoded::default();
+    let world = World { files, sources, main, options, stop, decoded };
+    stack::deep(move || world.stages(imported, settings))
+}
+
+/// What the source is set to, with the slips in it.
+fn settings(sources: &mut Sources, options: &Options) -> (Vec<Setting>, Vec<Diagnostic>) {
+    check::settings(sources, &options.set, &options.sweep, options.moment)
+}
+
+/// A source that is compiled at one moment after the other: what does not depend on the moment is done once.
+pub struct Series<'f> {
+    files: &'f dyn Files,
+    sources: Sources,
+    main: SourceId,
+    options: Options,
+    imported: Imported,
+    decoded: Decoded,
+}
+
+impl<'f> Series<'f> {
+    /// Parses a source and what it imports.
+    pub fn new(files: &'f dyn Files, mut sources: Sources, main: SourceId, options: Options) -> Series<'f> {
+        let limits = options.limits;
+        let imported = import::import(files, &mut sources, main, limits.levels, limits.text);
+        Series { files, sources, main, options, imported, decoded: Decoded::default() }
+    }
+
+    /// The texts of the source, of what it imports, and of the settings.
+    pub fn sources(&self) -> &Sources {
+        &self.sources
+    }
+
+    /// Compiles it at a moment, as [`compile`] does.
+    pub fn at(&mut self, moment: Moment) -> Compiled {
+        self.options.moment = moment;
+        let (settings, slips) = settings(&mut self.sources, &self.options);
+        let Series { files, sources, main, options, imported, decoded } = &*self;
+        let world = World { files: *files, sources, main: *main, options, stop: None, decoded };
+        stack::deep(move || {
+            let (program, found) = check::check(*files, sources, imported, &settings);
+            let diagnostics = [imported.diagnostics.clone(), slips, found].concat();
+            world.evaluated(program, &settings, diagnostics, Study::default()).0
+        })
+    }
 }
 
 /// What the stages are told.
@@ -160,6 +209,8 @@ struct World<'w> {
     options: &'w Options,
     /// Of who keeps what is learnt.
     stop: Option<Stop<'w>>,
+    /// Of scenes before this one.
+    decoded: &'w Decoded,
 }
 
 impl World<'_> {
@@ -167,10 +218,9 @@ impl World<'_> {
     fn stages(
         &self,
         mut imported: Imported,
-        settings: Vec<Setting>,
-        slips: Vec<Diagnostic>,
+        (settings, slips): (Vec<Setting>, Vec<Diagnostic>),
     ) -> (Compiled, Study) {
-        let World { files, sources, main, options, .. } = *self;
+        let World { files, sources, main, .. } = *self;
         let mut diagnostics = std::mem::take(&mut imported.diagnostics);
         diagnostics.extend(slips);
         let mut study = Study::default();
@@ -191,11 +241,23 @@ impl World<'_> {
         if self.is_stopped() {
             return (Compiled::unfinished(main), study);
         }
+        self.evaluated(program, &settings, diagnostics, study)
+    }
+
+    /// Evaluates what was checked, and lowers it.
+    fn evaluated(
+        &self,
+        program: Program,
+        settings: &[Setting],
+        mut diagnostics: Vec<Diagnostic>,
+        mut study: Study,
+    ) -> (Compiled, Study) {
+        let World { files, sources, main, options, .. } = *self;
         if diagnostic::any_errors(&diagnostics) {
             // What could not be understood may use any name.
             diagnostics.retain(|diagnostic| diagnostic.code != Code::W0106);
         }
-        let meshes = Meshes::new(files, sources);
+        let meshes = Meshes::new(files, sources, self.decoded);
         let measure = |things: &Things, thing: &Thing| lower::measure(things, thing, &meshes);
         let (things, found) = match self.stop {
             None => eval::eval(&program, options.limits, &measure),
@@ -221,7 +283,7 @@ impl World<'_> {
         if self.is_stopped() {
             return (Compiled::unfinished(main), study);
         }
-        check::blame(&settings, sources, main, &mut diagnostics);
+        check::blame(settings, sources, main, &mut diagnostics);
         if !diagnostic::any_errors(&diagnostics) {
             diagnostics.extend(lower::nothing_to_see(&things, main));
         }

@@ -39,6 +39,8 @@ const EDGES: &[(&str, &[&str])] = &[
     ("export", &["asset", "math", "color", "scene"]),
     ("lint", &["span", "diagnostic", "math", "color", "eval", "scene", "lower"]),
     ("render", &["math", "color", "develop", "asset", "scene"]),
+    // It compares numbers of pixels with each other.
+    ("denoise", &[]),
     ("output", &["math", "color", "develop", "scene"]),
     // Exact sums are shown by the picture that they make.
     ("saved", &["color", "scene", "render", "output"]),

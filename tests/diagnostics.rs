@@ -1,7 +1,8 @@
 //! Every slip, and what is said of it: `cases/diagnostics/*.rt`, with what a terminal shows beside them.
 //!
 //! A case is named after the code it is about, which is then the only one it gives. One of several files is a folder
-//! with a `main.rt`. A first line `// set: name=value` is given as by `--set`.
+//! with a `main.rt`. A first line `// set: name=value` is given as by `--set`, and `// sweep: name = a to b` as by `--sweep`, of
+//! which the only frame is made.
 
 use crate::folder::Folder;
 use rt_lang::diagnostic::{Code, Diagnostic};
@@ -28,14 +29,17 @@ fn slips_are_reported() {
             let name = named.file_name().unwrap().to_str().unwrap();
             let text = std::fs::read_to_string(path).unwrap();
             let mut sources = Sources::default();
-            let set = text.lines().next().and_then(|line| line.strip_prefix("// set: "));
-            let set = set.map(|set| vec![set.to_string()]).unwrap_or_default();
+            let given = |flag: &str| -> Vec<String> {
+                let value = text.lines().next().and_then(|line| line.strip_prefix(flag));
+                value.map(String::from).into_iter().collect()
+            };
+            let (set, sweep) = (given("// set: "), given("// sweep: "));
             let source = Source::new(path.file_name().unwrap().to_str().unwrap(), text);
             // Cases share files with others: the root is the folder of all of them.
             let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases");
             let below = path.strip_prefix(root.canonicalize().unwrap()).or(path.strip_prefix(&root)).unwrap();
             let id = sources.add(source.at(FilePath::root("").join(below.to_str().unwrap()).unwrap()));
-            let options = Options { set, ..Options::default() };
+            let options = Options { set, sweep, ..Options::default() };
             let compiled = compile(&Folder(root), &mut sources, id, &options);
             let codes: BTreeSet<&str> = compiled.diagnostics.iter().map(|d| d.code.as_str()).collect();
             if let Some(code) =

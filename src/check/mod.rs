@@ -19,6 +19,7 @@ mod query;
 mod rows;
 mod scope;
 mod setting;
+mod sweep;
 mod table;
 mod textures;
 mod types;
@@ -29,6 +30,7 @@ pub use functions::Function;
 pub use notes::{Filled, Home, Meaning, Notes, Visible};
 pub use program::*;
 pub use setting::{Setting, blame, settings};
+pub use sweep::Moment;
 pub use textures::parameters as texture_parameters;
 pub use types::{Element, FieldSet, Kind, Making, Type, describe_wanted};
 
@@ -200,7 +202,9 @@ impl<'a> Checker<'a> {
         let params: Vec<&str> = params.collect();
         for setting in self.settings.iter().filter(|setting| !params.contains(&setting.name.text.as_str())) {
             let ty = self.type_alone(&setting.value).and_then(|ty| Declared::of(&ty));
-            let value = self.text(setting.value.span);
+            // What it begins with is what it would be declared with.
+            let value = setting.ends.as_ref().map_or(&setting.value, |ends| &ends[0]);
+            let value = self.text(value.span);
             self.report(errors::no_such_param(&setting.name, &params, ty.as_ref(), value));
         }
     }

@@ -138,7 +138,10 @@ impl<'a> Checker<'a> {
         let settings = if place == Place::Main { self.settings } else { &[] };
         let set = settings.iter().find(|setting| setting.name.text == name.text);
         if let Some(setting) = set {
-            value = self.declared_value(&name.text, &declared, &setting.value);
+            value = match &setting.ends {
+                Some(ends) => self.swept_value(&name.text, &declared, setting, ends),
+                None => self.declared_value(&name.text, &declared, &setting.value),
+            };
         }
         // Of a type that its default does not have, which of the two was meant is not known.
         let ty = if fits { declared.ty() } else { Type::Invalid };

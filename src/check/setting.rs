@@ -1,6 +1,7 @@
 //! Settings from outside: `name=value`, each a source of its own.
 
 use super::errors;
+use super::sweep::{self, Moment};
 use crate::diagnostic::{Diagnostic, Label};
 use crate::source::{Source, Sources};
 use crate::span::{SourceId, Span};
@@ -14,6 +15,8 @@ pub struct Setting {
     pub name: Name,
     /// Its value.
     pub value: Expr,
+    /// The values that it is between, of a sweep.
+    pub ends: Option<Box<[Expr; 2]>>,
 }
 
 /// Points at a setting where the value that it gives is refused where the source has the name of its param: what is
@@ -32,36 +35,56 @@ pub fn blame(settings: &[Setting], sources: &Sources, main: SourceId, diagnostic
     }
 }
 
-/// Reads settings, each of the form `name=value`, into sources named `--set`.
-pub fn settings(sources: &mut Sources, given: &[String]) -> (Vec<Setting>, Vec<Diagnostic>) {
+/// Reads settings, each of the form `name=value`, into sources named `--set`; and those that go from one value to another,
+/// at a moment: see [`Moment`].
+pub fn settings(
+    sources: &mut Sources,
+    given: &[String],
+    swept: &[String],
+    moment: Moment,
+) -> (Vec<Setting>, Vec<Diagnostic>) {
     let mut settings: Vec<Setting> = vec![];
     let mut diagnostics = vec![];
     for (index, text) in given.iter().enumerate() {
-        // Of several, each has its number.
-        let name = if given.len() == 1 { "--set".into() } else { format!("--set#{}", index + 1) };
-        let source = sources.add(Source::new(&name, text.as_str()));
-        let whole = Span::new(source, 0, text.len());
-        let Some((name, value)) = text.split_once('=') else {
+        let (source, whole) = source(sources, "--set", (index, given.len()), text);
+        let Some((name, value)) = parts(source, text) else {
             diagnostics.push(errors::malformed_setting(whole));
             continue;
         };
-        let start = name.len() - name.trim_start().len();
-        let name =
-            Name { text: name.trim().into(), span: Span::new(source, start, start + name.trim().len()) };
-        let word = name.text.chars().all(|c| c.is_alphanumeric() || c == '_') && !name.text.is_empty();
-        if !word || value.trim().is_empty() {
-            diagnostics.push(errors::malformed_setting(whole));
-            continue;
-        }
-        if let Some(first) = settings.iter().find(|first| first.name.text == name.text) {
-            diagnostics.push(errors::set_twice(&name, first.name.span));
-            continue;
-        }
-        // Blanks in place of the name keep the places of the value.
-        let blank = " ".repeat(text.len() - value.len());
-        let (value, slips) = syntax::parse_expression(source, &(blank + value));
+        let (value, slips) = syntax::parse_expression(source, &value);
+        add(&mut settings, &mut diagnostics, Setting { name, value, ends: None });
         diagnostics.extend(slips);
-        settings.push(Setting { name, value });
     }
+    diagnostics.extend(sweep::sweeps(sources, swept, moment, &mut settings));
     (settings, diagnostics)
+}
+
+/// Takes in the text of a flag, the first number of the second, and says where all of it is.
+pub(super) fn source(
+    sources: &mut Sources,
+    flag: &str,
+    (index, of): (usize, usize),
+    text: &str,
+) -> (SourceId, Span) {
+    // Of several, each has its number.
+    let name = if of == 1 { flag.into() } else { format!("{flag}#{}", index + 1) };
+    let source = sources.add(Source::new(&name, text));
+    (source, Span::new(source, 0, text.len()))
+}
+
+/// The name, and the text of the value: with blanks in place of the name, which keep the places of the value.
+pub(super) fn parts(source: SourceId, text: &str) -> Option<(Name, String)> {
+    let (name, value) = text.split_once('=')?;
+    let start = name.len() - name.trim_start().len();
+    let name = Name { text: name.trim().into(), span: Span::new(source, start, start + name.trim().len()) };
+    let word = name.text.chars().all(|c| c.is_alphanumeric() || c == '_') && !name.text.is_empty();
+    (word && !value.trim().is_empty()).then(|| (name, " ".repeat(text.len() - value.len()) + value))
+}
+
+/// Adds a setting, unless there is one of its param.
+pub(super) fn add(settings: &mut Vec<Setting>, diagnostics: &mut Vec<Diagnostic>, setting: Setting) {
+    match settings.iter().find(|first| first.name.text == setting.name.text) {
+        Some(first) => diagnostics.push(errors::set_twice(&setting.name, first.name.span)),
+        None => settings.push(setting),
+    }
 }

@@ -1,11 +1,13 @@
 //! The flags and their help.
 
+mod animating;
 mod keeping;
 mod merge;
 mod tools;
 mod values;
 mod why;
 
+pub use animating::{Animating, Only};
 use clap::{Args, Parser, Subcommand};
 use keeping::noise;
 pub use keeping::{Every, Halting, Keeping, Resume, Shard};
@@ -128,7 +130,9 @@ Examples:
   rtc build balls.rt -o balls.exr --aov depth,object what else a picture shows
   rtc build balls.rt --crop 0,0,320,240 -o part.exr  only the top left quarter
   rtc build balls.rt --noise 1% --time 10min         until it is clean, but no longer
+  rtc build balls.rt --samples 32 --denoise          a clean picture of few samples
   rtc build balls.rt --samples 4096 --checkpoint     if it is ended, the same again goes on
+  rtc build balls.rt --sweep \"t = 0 to 1\" --frames 48 -o balls.webp    a film
   rtc build *.rt                                     each picture beside its scene
   cat balls.rt | rtc build - -o - > balls.png        standard input and output";
 
@@ -195,6 +199,11 @@ pub struct Build {
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = aov())]
     pub aov: Vec<Aov>,
 
+    /// Takes the noise out of the picture once it is traced, guided by the normals, colours and distances of what it shows. An
+    /// EXR holds the picture as traced, and the one without noise as the layer `denoised`.
+    #[arg(long)]
+    pub denoise: bool,
+
     /// Watches some paths once the picture is made, and tells what makes its noise, which lights give nothing, what no
     /// path meets, and what the limit of bounces costs.
     #[arg(long)]
@@ -211,6 +220,10 @@ pub struct Build {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub keeping: Keeping,
+
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub animating: Animating,
 
     #[command(flatten)]
     #[allow(missing_docs)]
@@ -365,6 +378,10 @@ pub struct Develop {
     /// with, which the EXR holds; 0 for one from another program.
     #[arg(long, value_name = "STOPS", value_parser = stops, allow_negative_numbers = true)]
     pub exposure: Option<f64>,
+
+    /// Develops the picture as it was traced, where the EXR holds it without noise too.
+    #[arg(long)]
+    pub noisy: bool,
 
     #[command(flatten)]
     #[allow(missing_docs)]

@@ -1,6 +1,8 @@
 //! `rtc build`: scenes to pictures.
 
+use super::animate::{self, has_number};
 use super::args::{Build, Keeping, Resume};
+use super::denoise;
 use super::input::is_standard;
 use super::interrupt::Interrupt;
 use super::messages::{Messenger, on_standard_output};
@@ -36,22 +38,37 @@ struct Job {
 pub struct Context<'a> {
     /// The flags.
     pub arguments: &'a Build,
-    threads: ThreadPool,
+    /// On which pictures are traced.
+    pub threads: ThreadPool,
     /// Where things are said.
     pub terminal: Terminal,
     /// Whether to end.
     pub interrupt: &'a Interrupt,
 }
 
-/// Makes the pictures in turn, also those behind one that fails.
-pub fn run(arguments: &Build, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
-    let jobs = plan(arguments)?;
-    let threads = ThreadPoolBuilder::new().num_threads(arguments.taking.threads.unwrap_or(0)).build();
-    let threads = threads.map_err(|error| Problem::new(format!("cannot start the threads: {error}")))?;
-    let context = Context { arguments, threads, terminal, interrupt };
-    if arguments.keeping.keeps() {
-        interrupt.heed_requests();
+impl<'a> Context<'a> {
+    /// Starts the threads.
+    pub fn new(
+        arguments: &'a Build,
+        terminal: Terminal,
+        interrupt: &'a Interrupt,
+    ) -> Result<Context<'a>, Problem> {
+        let threads = ThreadPoolBuilder::new().num_threads(arguments.taking.threads.unwrap_or(0)).build();
+        let threads = threads.map_err(|error| Problem::new(format!("cannot start the threads: {error}")))?;
+        if arguments.keeping.keeps() {
+            interrupt.heed_requests();
+        }
+        Ok(Context { arguments, threads, terminal, interrupt })
     }
+}
+
+/// Makes the pictures in turn, also those behind one that fails; or a film.
+pub fn run(arguments: &Build, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
+    if arguments.animating.frames.is_some() {
+        return animate::run(arguments, terminal, interrupt);
+    }
+    let jobs = plan(arguments)?;
+    let context = Context::new(arguments, terminal, interrupt)?;
     let mut messenger = Messenger::new(&arguments.messages, terminal, arguments.quiet);
     let mut worst = Exit::Done;
     for job in &jobs {
@@ -74,6 +91,11 @@ fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
         ([scene], []) if is_standard(scene) => {
             let problem = Problem::new("a scene from standard input has no name to put its picture beside");
             return Err(problem.help("say where it goes: `-o picture.png`, or `-o -` for standard output"));
+        }
+        (_, [numbered, ..]) if has_number(numbered) => {
+            let problem =
+                Problem::new(format!("`{}` is the name of frames, and there are none", numbered.display()));
+            return Err(problem.help("ask for some: `--sweep \"t = 0 to 1\" --frames 48`"));
         }
         ([scene], outputs @ [_, ..]) => vec![Job { scene: scene.clone(), targets: targets(outputs)? }],
         (_, [_, ..]) => {
@@ -102,6 +124,7 @@ fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
     }
     refuse_what_shares_cannot(arguments, &all)?;
     refuse_checkpoints_of_others(arguments)?;
+    denoise::refuse(arguments)?;
     if on_standard_output(&arguments.messages) && all.iter().any(|target| is_standard(&target.path)) {
         let problem = Problem::new("the picture and the messages would both go to standard output");
         return Err(problem.help("write the picture to a file, or use `--message-format short`"));
@@ -148,7 +171,7 @@ pub fn refuse_idle_depth(depth: Depth, targets: &[Target]) -> Result<(), Problem
 }
 
 /// `--aov` must find an EXR to hold its channels, and each of them once.
-fn refuse_idle_aovs(wanted: &[Aov], targets: &[Target]) -> Result<(), Problem> {
+pub fn refuse_idle_aovs(wanted: &[Aov], targets: &[Target]) -> Result<(), Problem> {
     let repeated = |(index, aov): (usize, &Aov)| wanted[..index].contains(aov);
     if wanted.iter().enumerate().any(repeated) {
         return Err(Problem::new("`--aov` names something twice"));
@@ -226,15 +249,15 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
         return Ok(Exit::Diagnostics);
     };
     let window = window(scene, arguments.crop)?;
-    let staged = stage(context, job, scene, window)?;
+    let staged = stage(context, &job.targets, scene, window)?;
     let Some(from) = compiled.provenance(&loaded.sources) else { return Ok(Exit::Diagnostics) };
     let plan = Plan::new(arguments, from, window, &job.targets)?;
-    let mut traced = context.threads.install(|| trace(context, &job.scene, plan))?;
+    let mut traced = context.threads.install(|| trace(context, &job.scene, plan, None))?;
     context.threads.install(|| match &traced.sums {
         Some((subject, making)) => write_share(subject, making, &traced.facts, staged),
         None => {
             let depth = arguments.taking.look.bits;
-            write(&traced.picture, &traced.facts, &traced.channels, depth, staged)
+            write(traced.versions(), &traced.facts, &traced.channels, depth, staged)
         }
     })?;
     // The picture is safe before it is thought about.
@@ -253,6 +276,9 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
     if !arguments.quiet {
         compiled.notes.iter().for_each(|note| terminal.line(note));
         terminal.line(&summary(job, scene, &traced, start.elapsed()));
+        if arguments.denoise && traced.denoised.is_none() {
+            terminal.line("the picture is not denoised: that needs 2 samples a pixel");
+        }
     }
     Ok(exit)
 }
@@ -263,7 +289,7 @@ const MOST_CUT: f64 = 0.05;
 const MOST_BURNT_OUT: f64 = 0.25;
 
 /// What is probably not meant in a picture that is done. Who limits the samples knows that there may be noise.
-fn findings(scene: &Scene, traced: &Traced, limited: bool) -> Vec<Finding> {
+pub fn findings(scene: &Scene, traced: &Traced, limited: bool) -> Vec<Finding> {
     let Traced { stops, fitting, samples: [_, samples], .. } = *traced;
     let mut findings = vec![];
     if let Some(noise) = traced.facts.noise
@@ -296,11 +322,15 @@ fn summary(job: &Job, scene: &Scene, traced: &Traced, time: Duration) -> String 
     let names = names(&job.targets);
     let Picture { size: [width, height], .. } = traced.picture;
     let samples = samples(traced);
-    format!("{names}: {width}×{height}, {samples} in {}, {exposure}", duration(time))
+    let denoised = match &traced.denoised {
+        Some(denoised) => format!(", denoised in {} of that", duration(denoised.time)),
+        None => String::new(),
+    };
+    format!("{names}: {width}×{height}, {samples} in {}{denoised}, {exposure}", duration(time))
 }
 
 /// How many samples were taken, what noise they leave, and why no more.
-fn samples(traced: &Traced) -> String {
+pub fn samples(traced: &Traced) -> String {
     let Traced { samples: [least, most], mean_samples, .. } = *traced;
     let count = match (least, most) {
         (1, 1) => "1 sample".to_string(),
@@ -319,7 +349,7 @@ fn samples(traced: &Traced) -> String {
 }
 
 /// The pixels to trace.
-fn window(scene: &Scene, crop: Option<[u32; 4]>) -> Result<Window, Problem> {
+pub fn window(scene: &Scene, crop: Option<[u32; 4]>) -> Result<Window, Problem> {
     let whole = Window::whole(scene.trace.size);
     let window = crop.map_or(whole, |[x, y, width, height]| Window { x, y, width, height });
     let ends = |start: u32, length: u32, most: u32| start.checked_add(length).is_some_and(|end| end <= most);
@@ -334,11 +364,16 @@ fn window(scene: &Scene, crop: Option<[u32; 4]>) -> Result<Window, Problem> {
 }
 
 /// Makes sure before any work that every output can be written.
-fn stage(context: &Context, job: &Job, scene: &Scene, window: Window) -> Result<Vec<Staged>, Problem> {
-    refuse_misfits(&job.targets, scene, window)?;
+pub fn stage(
+    context: &Context,
+    targets: &[Target],
+    scene: &Scene,
+    window: Window,
+) -> Result<Vec<Staged>, Problem> {
+    refuse_misfits(targets, scene, window)?;
     let Context { arguments, interrupt, .. } = context;
     let stage = if arguments.keeping.keeps() { Target::stage_again } else { Target::stage };
-    job.targets.iter().map(|target| stage(target, interrupt)).collect()
+    targets.iter().map(|target| stage(target, interrupt)).collect()
 }
 
 /// A format must be able to hold the picture.
@@ -368,7 +403,7 @@ pub fn make(
     refuse_misfits(std::slice::from_ref(target), from.scene, window)?;
     let staged = target.stage(interrupt)?;
     let Ok(traced) = take(from, window, control.clone()) else { return Ok(None) };
-    write(&traced.picture, &traced.facts, &traced.channels, Depth::Eight, vec![staged]).map(Some)
+    write(traced.versions(), &traced.facts, &traced.channels, Depth::Eight, vec![staged]).map(Some)
 }
 
 /// The exposure where the scene gives none. Two digits, so that the number that is printed gives the very picture when
@@ -377,18 +412,40 @@ pub fn chosen_stops(prepass: &Prepass) -> f64 {
     (prepass.exposure_stops * 100.0).round() / 100.0 + 0.0
 }
 
+/// A picture as it is written.
+#[derive(Clone, Copy)]
+pub struct Versions<'p> {
+    /// As it was traced: that of an EXR.
+    pub traced: &'p Picture,
+    /// Without noise: that of all other formats, and a layer of an EXR.
+    pub denoised: Option<&'p Picture>,
+}
+
+impl<'p> From<&'p Picture> for Versions<'p> {
+    fn from(traced: &'p Picture) -> Versions<'p> {
+        Versions { traced, denoised: None }
+    }
+}
+
 /// Writes every form of a picture, and only then moves them to their places.
-pub fn write(
-    picture: &Picture,
+pub fn write<'p>(
+    versions: impl Into<Versions<'p>>,
     facts: &Facts,
     channels: &Channels,
     depth: Depth,
     mut staged: Vec<Staged>,
 ) -> Result<(), Problem> {
+    let Versions { traced, denoised } = versions.into();
     for file in &mut staged {
         let bytes = match file.target.format {
-            Format::Exr => encode_exr(picture, facts, channels.clone()),
-            format => encode(picture, facts, format, depth),
+            Format::Exr => {
+                let mut channels = channels.clone();
+                if let Some(denoised) = denoised {
+                    denoise::layer(denoised, &mut channels);
+                }
+                encode_exr(traced, facts, channels)
+            }
+            format => encode(denoised.unwrap_or(traced), facts, format, depth),
         };
         let bytes = bytes.map_err(|reason| {
             Problem::new(format!("cannot write {}: {reason}", names(std::slice::from_ref(&file.target))))

@@ -5,7 +5,7 @@ use super::interrupt::Interrupt;
 use super::target::Staged;
 use super::terminal::Terminal;
 use super::{Exit, Problem, build, input};
-use rt_lang::output::{Channels, MOST_PIXELS, decode_exr};
+use rt_lang::output::{Channels, MOST_PIXELS, decode_exr, decode_shown};
 
 /// The largest EXR that is read: the most pixels, uncompressed, with a channel to spare.
 const LARGEST: u64 = MOST_PIXELS * 16;
@@ -16,7 +16,11 @@ pub fn run(arguments: &Develop, terminal: Terminal, interrupt: &Interrupt) -> Re
     build::refuse_inputs_as_outputs(std::slice::from_ref(&arguments.input), &build::paths(&targets))?;
     build::refuse_idle_depth(arguments.look.bits, &targets)?;
     let bytes = input::read_bytes(&arguments.input, LARGEST)?;
-    let (picture, mut facts) = decode_exr(&bytes).map_err(|reason| {
+    let decoded = match arguments.noisy {
+        true => decode_exr(&bytes),
+        false => decode_shown(&bytes),
+    };
+    let (picture, mut facts) = decoded.map_err(|reason| {
         Problem::new(format!("`{}` is not an EXR that can be developed: {reason}", arguments.input.display()))
             .help("`rtc build scene.rt -o scene.exr` makes one")
     })?;

@@ -100,6 +100,11 @@ impl Disk {
         self.lock().iter().map(|(path, answer)| (self.named(path), answer.clone().ok())).collect()
     }
 
+    /// The files that were read.
+    pub fn read_paths(&self) -> Vec<PathBuf> {
+        self.held().into_iter().filter_map(|(path, bytes)| bytes.map(|_| path)).collect()
+    }
+
     /// A file's path as the user would write it.
     fn named(&self, path: &FilePath) -> PathBuf {
         if self.shown.as_os_str() == "." { path.as_str().into() } else { self.shown.join(path.as_str()) }

@@ -3,9 +3,10 @@
 use super::Exit;
 use super::terminal::Terminal;
 use rt_lang::render::Control;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::PathBuf;
+use std::process::{Child, ExitStatus};
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -13,12 +14,17 @@ use std::time::Duration;
 /// How long the work may take to stop by itself before the process is ended.
 const GRACE: Duration = Duration::from_millis(40);
 
+/// How often it is looked whether a program has ended.
+const PERIOD: Duration = Duration::from_millis(10);
+
 /// Whether the process is asked to end, and what to tidy up then.
 #[derive(Clone, Debug, Default)]
 pub struct Interrupt {
     /// The render that is to stop first.
     control: Arc<Mutex<Option<Arc<Control>>>>,
     unfinished: Arc<Mutex<BTreeSet<PathBuf>>>,
+    /// Programs that work for this one, and end with it.
+    children: Arc<Mutex<BTreeMap<u32, Child>>>,
     /// Whether it was asked to end.
     asked: Arc<AtomicBool>,
     /// Whether the work under way ends the process when it was asked to.
@@ -103,6 +109,36 @@ impl Interrupt {
         std::mem::forget(unfinished);
     }
 
+    /// Ends a program when this one is asked to end, before what it writes is removed. Gives its number.
+    pub fn end_with(&self, child: Child) -> u32 {
+        let id = child.id();
+        lock(&self.children).insert(id, child);
+        id
+    }
+
+    /// Waits until that program ends by itself, and tells how; none where it is gone.
+    pub fn wait_for_child(&self, id: u32) -> io::Result<Option<ExitStatus>> {
+        loop {
+            // Not held while waiting, so that it can be ended.
+            let mut children = lock(&self.children);
+            let Some(child) = children.get_mut(&id) else { return Ok(None) };
+            let status = child.try_wait();
+            if !matches!(status, Ok(None)) {
+                children.remove(&id);
+                return status;
+            }
+            drop(children);
+            std::thread::sleep(PERIOD);
+        }
+    }
+
+    /// Ends that program at once.
+    pub fn end_child(&self, id: u32) {
+        if let Some(child) = lock(&self.children).remove(&id) {
+            kill(child);
+        }
+    }
+
     fn end(&self, terminal: Terminal) {
         let again = self.asked.swap(true, SeqCst);
         let control = lock(&self.control).clone();
@@ -121,6 +157,7 @@ impl Interrupt {
     fn leave(&self, terminal: Terminal) -> ! {
         // Held until the process is gone, so that nobody makes or moves a file from here on.
         let unfinished = lock(&self.unfinished);
+        std::mem::take(&mut *lock(&self.children)).into_values().for_each(kill);
         remove(&unfinished);
         if terminal.interactive {
             // Past the progress bar.
@@ -136,6 +173,11 @@ fn remove(paths: &BTreeSet<PathBuf>) {
     for path in paths {
         let _ = if path.is_dir() { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) };
     }
+}
+
+/// Ends a program. One that has ended is none the worse for it.
+fn kill(mut child: Child) {
+    let _ = child.kill().and_then(|()| child.wait());
 }
 
 /// What the locks guard is whole at any time, also after a panic.

@@ -20,6 +20,15 @@ pub struct Places {
     to: PathBuf,
     /// Where they come from, and whether there must be some.
     from: Option<(PathBuf, bool)>,
+    /// Whether samples of another picture are left aside, and not an error.
+    yields: bool,
+}
+
+impl Places {
+    /// The same for a frame of a film: where the scene has changed, it is made anew.
+    pub fn yielding(self) -> Places {
+        Places { yields: true, ..self }
+    }
 }
 
 /// The places that flags name, for a picture that goes to these targets; none where nothing is to be kept.
@@ -43,10 +52,11 @@ pub fn places(arguments: &Keeping, targets: &[Target]) -> Result<Option<Places>,
         Some(Resume::From(file)) => Some((file.clone(), true)),
         Some(Resume::Auto) | None => Some((to.clone(), false)),
     };
-    Ok(Some(Places { to, from }))
+    Ok(Some(Places { to, from, yields: false }))
 }
 
-fn beside(targets: &[Target]) -> Result<PathBuf, Problem> {
+/// Where the samples of a picture are kept that goes to these targets, unless a flag says it.
+pub fn beside(targets: &[Target]) -> Result<PathBuf, Problem> {
     let file = targets.iter().find(|target| !input::is_standard(&target.path));
     let Some(file) = file else {
         let problem = Problem::new("a picture on standard output has no name to put its checkpoint beside");
@@ -100,6 +110,9 @@ impl<'a> Keeper<'a> {
         };
         let saved = Saved::decode(&bytes).map_err(|why| cannot(format!("it {why}")))?;
         if let Some(why) = self.subject.refuses(&saved.subject) {
+            if self.places.yields {
+                return Ok(None);
+            }
             return Err(cannot(why));
         }
         self.last.1 = saved.making.mean_samples();

@@ -12,14 +12,18 @@
 //! | [`terminal`] | the one writer to standard error |
 //! | [`progress`] | how far a picture is |
 //! | [`trace`] | a picture from beginning to end |
+//! | [`denoise`] | its noise taken out |
+//! | [`animate`] | films, frame by frame |
 //! | [`keep`], [`shard`] | what of it is kept on the way, and which share of it is made |
 //! | [`live`] | the picture that follows the text |
 //! | [`lsp`] | the language server |
 //! | [`build`], [`check`], [`develop`], [`expand`], [`explain`], [`export`], [`fmt`], [`info`], [`init`], [`manual`], [`merge`], [`why`] | the commands |
 
+mod animate;
 mod args;
 mod build;
 mod check;
+mod denoise;
 mod develop;
 mod expand;
 mod explain;

@@ -26,7 +26,7 @@ pub struct Loaded {
 impl Loaded {
     /// The files that were read beside the scene.
     pub fn read(&self) -> Vec<PathBuf> {
-        self.files.held().into_iter().filter_map(|(path, bytes)| bytes.map(|_| path)).collect()
+        self.files.read_paths()
     }
 }
 
@@ -40,6 +40,14 @@ pub fn load(path: &Path, reading: &Reading, overrides: &Overrides) -> Result<Loa
 pub fn take(path: &Path, input: Input, reading: &Reading, overrides: &Overrides) -> Result<Loaded, Problem> {
     let (files, place) = disk(path, reading)?;
     Ok(take_from(files, place, input, reading, overrides))
+}
+
+/// Reads a scene that is to be compiled again and again, with what it may read.
+pub fn open(path: &Path, reading: &Reading) -> Result<(Disk, Input), Problem> {
+    let mut input = input::read(path, reading.limits().source)?;
+    let (files, place) = disk(path, reading)?;
+    input.sources.place(input.id, place);
+    Ok((files, input))
 }
 
 /// Compiles a scene that was read and has its place among files.

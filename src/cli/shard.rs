@@ -47,17 +47,21 @@ fn array(variable: &dyn Fn(&str) -> Option<String>) -> Result<(u32, u32), Proble
     }
 }
 
-/// The number of the share by the index of the task: that of Slurm as it is, that of Kubernetes, which counts from 0, plus 1.
+/// The number of the share by the index of the task.
 fn index(variable: &dyn Fn(&str) -> Option<String>) -> Result<u32, Problem> {
-    let number = |name: &str| variable(name).and_then(|value| value.trim().parse::<u32>().ok());
-    let slurm = number("SLURM_ARRAY_TASK_ID");
-    let kubernetes = || number("JOB_COMPLETION_INDEX").and_then(|index| index.checked_add(1));
-    slurm.or_else(kubernetes).ok_or_else(|| {
+    task(variable).ok_or_else(|| {
         let problem = Problem::new("no scheduler says which share this is");
         problem.help(
             "`--shard auto/N` asks SLURM_ARRAY_TASK_ID, then JOB_COMPLETION_INDEX; else give `--shard I/N`",
         )
     })
+}
+
+/// The number of the task, as a scheduler says it: that of Slurm as it is, that of Kubernetes, which counts from 0, plus 1.
+pub fn task(variable: &dyn Fn(&str) -> Option<String>) -> Option<u32> {
+    let number = |name: &str| variable(name).and_then(|value| value.trim().parse::<u32>().ok());
+    let kubernetes = || number("JOB_COMPLETION_INDEX").and_then(|index| index.checked_add(1));
+    number("SLURM_ARRAY_TASK_ID").or_else(kubernetes)
 }
 
 #[cfg(test)]

@@ -126,9 +126,30 @@ impl Aside {
     /// Writes all bytes and waits until they are on the disk.
     pub fn write(&mut self, bytes: &[u8]) -> Result<(), Problem> {
         let Some((file, _)) = &mut self.file else { return Ok(()) };
-        let file = file.as_file_mut();
-        let written = file.write_all(bytes).and_then(|()| file.sync_all());
-        written.map_err(|error| cannot_write(&format!("`{}`", self.path.display()), &error))
+        let written = file.as_file_mut().write_all(bytes);
+        written.map_err(|error| cannot_write(&format!("`{}`", self.path.display()), &error))?;
+        self.sync()
+    }
+
+    /// The file, for who writes it piece by piece, and then calls [`Aside::sync`].
+    pub fn file(&self) -> io::Result<fs::File> {
+        self.file.as_ref().map_or(Err(io::ErrorKind::NotFound.into()), |(file, _)| file.as_file().try_clone())
+    }
+
+    /// The name of the file, for another program that writes it; then comes [`Aside::sync`].
+    pub fn lend(&self) -> PathBuf {
+        self.file.as_ref().map_or_else(PathBuf::new, |(file, _)| {
+            // Some systems let nobody else write what is locked.
+            let _ = file.as_file().unlock();
+            file.path().to_path_buf()
+        })
+    }
+
+    /// Waits until what was written is on the disk.
+    pub fn sync(&mut self) -> Result<(), Problem> {
+        let Some((file, _)) = &self.file else { return Ok(()) };
+        let synced = file.as_file().sync_all();
+        synced.map_err(|error| cannot_write(&format!("`{}`", self.path.display()), &error))
     }
 
     /// Moves the file to its place.
@@ -227,7 +248,13 @@ fn temporary<'a>(existing: Option<Permissions>) -> tempfile::Builder<'a, 'static
 }
 
 fn unknown_format(name: &str) -> Problem {
-    Problem::new(format!("`{name}` is no format of pictures")).help(known_formats())
+    let problem = Problem::new(format!("`{name}` is no format of pictures"));
+    match name.to_ascii_lowercase().as_str() {
+        "apng" | "mp4" | "mov" | "mkv" | "webm" => {
+            problem.help("it is one of films, which have frames: `--sweep \"t = 0 to 1\" --frames 48`")
+        }
+        _ => problem.help(known_formats()),
+    }
 }
 
 fn known_formats() -> String {

@@ -2,7 +2,8 @@
 
 use super::Problem;
 use super::args::Build;
-use super::build::{Context, chosen_stops};
+use super::build::{Context, Versions, chosen_stops};
+use super::denoise::{self, Denoised};
 use super::keep::{self, Keeper, Places};
 use super::progress::Progress;
 use super::shard;
@@ -12,12 +13,13 @@ use rt_lang::output::{Channels, Facts, Picture};
 use rt_lang::render::feedback::Feedback;
 use rt_lang::render::halt::{Limit, Limits};
 use rt_lang::render::making::Making;
-use rt_lang::render::{Cancelled, Control, Prepass, Shown, Tracer, Window};
+use rt_lang::render::{Cancelled, Control, Prepass, Shown, Structure, Tracer, Window};
 use rt_lang::saved::{self, Share, Subject};
 use rt_lang::scene::{self, Scene, identity::Identity};
 use rt_lang::why::Provenance;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// What is to be traced.
 pub struct Plan<'a> {
@@ -26,12 +28,15 @@ pub struct Plan<'a> {
     limits: Limits,
     share: Option<Share>,
     places: Option<Places>,
+    denoises: bool,
 }
 
 /// A window of a picture as traced, and what there is to say of it.
 pub struct Traced {
     /// The picture.
     pub picture: Picture,
+    /// The same without noise, if that was asked for and there were samples enough.
+    pub denoised: Option<Denoised>,
     /// How it came about.
     pub facts: Facts,
     /// What is shown beside the light.
@@ -56,6 +61,29 @@ pub struct Traced {
     pub feedback: Option<Feedback>,
 }
 
+/// What a frame of a film leaves for the next one: what of it fits is not made again.
+#[derive(Default)]
+pub struct Before {
+    /// What rays are tested against.
+    pub structure: Option<Structure>,
+    /// Its samples, with the hash of the scene that they are of.
+    making: Option<(Option<String>, Making)>,
+}
+
+impl Before {
+    /// The samples, if they are of the same picture, and no more than it is to have. Which there are for a noise depends on
+    /// how the picture is exposed.
+    fn samples(&mut self, tracing: &Tracing, window: Window) -> Option<Making> {
+        let Limits { samples, noise, time, .. } = tracing.limits;
+        let (hash, making) = self.making.take()?;
+        let fits = hash == tracing.facts.scene
+            && making.film().window() == window
+            && making.samples()[1] <= samples
+            && (noise, time) == (None, None);
+        fits.then_some(making)
+    }
+}
+
 impl<'a> Plan<'a> {
     /// What flags and a scene say of a window that goes to these targets.
     pub fn new(
@@ -67,7 +95,36 @@ impl<'a> Plan<'a> {
         let share = share(arguments, from.scene)?;
         let limits = limits(arguments, from.scene, share)?;
         let places = keep::places(&arguments.keeping, targets)?;
-        Ok(Plan { from, window, limits, share, places })
+        denoise::refuse_samples(arguments, limits.samples)?;
+        Ok(Plan { from, window, limits, share, places, denoises: arguments.denoise })
+    }
+
+    /// The same for a frame of a film: see [`Places::yielding`]. One to be denoised is kept when it is done, and not before,
+    /// since the halves of its samples cannot be.
+    pub fn of_frame(self) -> Plan<'a> {
+        Plan { places: self.places.filter(|_| !self.denoises).map(Places::yielding), ..self }
+    }
+
+    /// What is traced of the picture.
+    pub fn window(&self) -> Window {
+        self.window
+    }
+
+    /// Whether its noise is taken out.
+    pub fn denoises(&self) -> bool {
+        self.denoises
+    }
+
+    /// When it is done.
+    pub fn limits(&self) -> &Limits {
+        &self.limits
+    }
+}
+
+impl Traced {
+    /// The picture to write.
+    pub fn versions(&self) -> Versions<'_> {
+        Versions { traced: &self.picture, denoised: self.denoised.as_ref().map(|denoised| &denoised.picture) }
     }
 }
 
@@ -100,41 +157,60 @@ fn limits(arguments: &Build, scene: &Scene, share: Option<Share>) -> Result<Limi
     Ok(limits)
 }
 
-/// Traces on the current rayon pool, showing how far it is. Asked to end, it ends the process.
-pub fn trace(context: &Context, name: &Path, plan: Plan) -> Result<Traced, Problem> {
+/// Traces on the current rayon pool, showing how far it is. Asked to end, it ends the process. A frame of a film goes on from
+/// the one `before`.
+pub fn trace(
+    context: &Context,
+    name: &Path,
+    plan: Plan,
+    mut before: Option<&mut Before>,
+) -> Result<Traced, Problem> {
     let control = Arc::new(Control::new());
     context.interrupt.watch(control.clone());
     let shown = context.terminal.interactive && !context.arguments.quiet;
     let _progress = shown.then(|| Progress::watch(control.clone(), name.display().to_string()));
-    let Plan { from, window, limits, share, places } = plan;
-    let tracing = Tracing::new(from, window, limits, share, control);
+    let Plan { from, window, limits, share, places, denoises } = plan;
+    let structure = before.as_mut().and_then(|before| before.structure.take());
+    let Ok(tracing) = Tracing::new(from, window, limits, share, control, structure) else {
+        context.interrupt.wait()
+    };
     let aovs = &context.arguments.aov;
     let every = context.arguments.keeping.checkpoint_every;
-    let keeper = places.map(|places| {
+    let mut keeper = places.map(|places| {
         Keeper::new(places, every, (&tracing.subject, &tracing.facts), context.interrupt, context.terminal)
     });
-    let ended = match keeper {
-        Some(mut keeper) => {
-            let mut making = tracing.begin(window, keeper.resume()?)?;
-            let limit = tracing.go_on_keeping(&mut making, &mut keeper, context);
-            limit.and_then(|limit| tracing.finish(making, limit, aovs))
-        }
-        None => {
-            let mut making = tracing.begin(window, None)?;
-            let limit = tracing.go_on(&mut making, &mut |_| {});
-            limit.and_then(|limit| tracing.finish(making, limit, aovs))
-        }
+    let kept = match &mut keeper {
+        Some(keeper) => keeper.resume()?,
+        None => None,
     };
-    Ok(ended.unwrap_or_else(|Cancelled| context.interrupt.wait()))
+    let reused = before.as_mut().and_then(|before| before.samples(&tracing, window));
+    let mut making = tracing.begin(window, kept.or(reused))?;
+    if denoises && !making.is_in_halves() {
+        making = making.in_halves();
+    }
+    let limit = match &mut keeper {
+        Some(keeper) => tracing.go_on_keeping(&mut making, keeper, context),
+        None => tracing.go_on(&mut making, &mut |_| {}),
+    };
+    let ended = limit.and_then(|limit| tracing.finish(&making, limit, aovs));
+    let Ok(traced) = ended else { context.interrupt.wait() };
+    if share.is_some() {
+        return Ok(Traced { sums: Some((tracing.subject, making)), ..traced });
+    }
+    if let Some(before) = before {
+        before.making = Some((tracing.facts.scene, making));
+        before.structure = Some(tracing.tracer.into_structure());
+    }
+    Ok(traced)
 }
 
 /// Traces what a scene says, and nothing besides.
 pub fn take(from: Provenance, window: Window, control: Arc<Control>) -> Result<Traced, Cancelled> {
     let limits = Limits::from(from.scene.trace.target);
-    let tracing = Tracing::new(from, window, limits, None, control);
+    let tracing = Tracing::new(from, window, limits, None, control, None)?;
     let mut making = Making::new(window, tracing.prepass.scale);
     let limit = tracing.go_on(&mut making, &mut |_| {})?;
-    tracing.finish(making, limit, &[])
+    tracing.finish(&making, limit, &[])
 }
 
 /// A picture being traced.
@@ -157,9 +233,11 @@ impl<'a> Tracing<'a> {
         limits: Limits,
         share: Option<Share>,
         control: Arc<Control>,
-    ) -> Tracing<'a> {
+        structure: Option<Structure>,
+    ) -> Result<Tracing<'a>, Cancelled> {
         let scene = from.scene;
-        let tracer = Tracer::new(scene);
+        let mut tracer = Tracer::at_once(scene, structure);
+        tracer.find_caustics(&control)?;
         let prepass = tracer.prepass();
         let stops = scene.develop.exposure.unwrap_or(chosen_stops(&prepass));
         let shown = Shown { stops, tonemap: scene.develop.tonemap };
@@ -172,7 +250,7 @@ impl<'a> Tracing<'a> {
         };
         let identity = Identity::new(scene, [window.x, window.y, window.width, window.height]);
         let subject = Subject { program: facts.software.clone(), identity, share };
-        Tracing { from, tracer, prepass, shown, limits, subject, facts, control }
+        Ok(Tracing { from, tracer, prepass, shown, limits, subject, facts, control })
     }
 
     /// The picture to go on with, or a new one.
@@ -210,16 +288,31 @@ impl<'a> Tracing<'a> {
         limit
     }
 
-    fn finish(&self, making: Making, limit: Limit, aovs: &[Aov]) -> Result<Traced, Cancelled> {
+    /// The picture without noise, if it was traced in halves and every pixel has a sample of each.
+    fn denoised(&self, picture: &Picture, making: &Making) -> Result<Option<Denoised>, Cancelled> {
+        let [least, most] = making.samples();
+        if !making.is_in_halves() || least < denoise::LEAST_SAMPLES {
+            return Ok(None);
+        }
+        let start = Instant::now();
+        let guides =
+            self.tracer.guides(making.film().window(), denoise::guide_samples(most), &self.control)?;
+        Ok(denoise::denoised(picture, making, guides, start))
+    }
+
+    fn finish(&self, making: &Making, limit: Limit, aovs: &[Aov]) -> Result<Traced, Cancelled> {
         let (samples, mean_samples) = (making.samples(), making.mean_samples());
         let facts = Facts { limit: Some(limit.word().into()), ..self.facts.clone() };
         let facts = saved::judged(facts, making.film(), samples);
         let film = making.film();
+        let picture = saved::picture(film, &self.subject.identity);
+        let denoised = self.denoised(&picture, making)?;
         let of_first = aovs.iter().any(|aov| aov.is_of_first_hits());
         let first =
             of_first.then(|| self.tracer.first_hits(film.window(), samples[1], &self.control)).transpose()?;
         Ok(Traced {
-            picture: saved::picture(film, &self.subject.identity),
+            picture,
+            denoised,
             target_met: self
                 .limits
                 .noise
@@ -232,7 +325,7 @@ impl<'a> Tracing<'a> {
             stops: self.shown.stops,
             fitting: chosen_stops(&self.prepass),
             cut: self.prepass.cut,
-            sums: self.subject.share.map(|_| (self.subject.clone(), making)),
+            sums: None,
             feedback: None,
         })
     }

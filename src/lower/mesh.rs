@@ -1,5 +1,6 @@
 //! Meshes: files to triangles, each file read once.
 
+use super::decoded::Decoded;
 use super::errors;
 use super::shape::placed;
 use crate::asset::Mesh;
@@ -24,6 +25,7 @@ const MAX_FILE: usize = 1 << 28;
 pub struct Meshes<'f> {
     files: &'f dyn Files,
     sources: &'f Sources,
+    pub(super) decoded: &'f Decoded,
     read: RefCell<Read>,
 }
 
@@ -36,8 +38,8 @@ struct Read {
 
 impl<'f> Meshes<'f> {
     /// None yet. The paths in `sources` are relative to each source's own.
-    pub fn new(files: &'f dyn Files, sources: &'f Sources) -> Meshes<'f> {
-        Meshes { files, sources, read: RefCell::default() }
+    pub fn new(files: &'f dyn Files, sources: &'f Sources, decoded: &'f Decoded) -> Meshes<'f> {
+        Meshes { files, sources, decoded, read: RefCell::default() }
     }
 
     /// Says where they were read.
@@ -73,7 +75,7 @@ impl<'f> Meshes<'f> {
             Some(found) => found.clone(),
             None => {
                 let bytes = self.files.read(&path, MAX_FILE).map_err(refuse)?;
-                let found = Mesh::decode(&bytes).map(Arc::new);
+                let found = self.decoded.mesh(&path, &bytes);
                 read.triangles += found.as_ref().map_or(0, |mesh| mesh.len());
                 read.files.insert(path, found.clone());
                 found

@@ -2,6 +2,7 @@
 //! make `sphere { radius: 1m }` a picture.
 
 mod camera;
+mod decoded;
 mod errors;
 mod lights;
 mod material;
@@ -24,6 +25,7 @@ use crate::scene::{
 use crate::schema::{self, Category, DEFAULT_SAMPLES, KindId, light, render, sun};
 use crate::source::Sources;
 use crate::span::{SourceId, Span};
+pub use decoded::Decoded;
 pub use marks::{Marks, MaterialMarks};
 use material::Materials;
 pub use mesh::Meshes;
@@ -101,7 +103,7 @@ pub fn lower(
         written: &written,
         primitives: vec![],
         materials: Materials::default(),
-        textures: Textures::new(files, sources),
+        textures: Textures::new(files, sources, meshes.decoded),
         meshes,
         frames: vec![],
         lights: vec![],

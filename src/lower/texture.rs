@@ -1,5 +1,6 @@
 //! Textures: written values to entries of the scene, files to pictures, each once.
 
+use super::decoded::Decoded;
 use super::errors;
 use crate::asset::Image;
 use crate::diagnostic::Diagnostic;
@@ -23,6 +24,7 @@ const MAX_PIXELS: u64 = 1 << 27;
 pub(super) struct Textures<'f> {
     files: &'f dyn Files,
     sources: &'f Sources,
+    decoded: &'f Decoded,
     textures: Vec<Texture>,
     /// By canonical bytes.
     known: BTreeMap<Vec<u8>, TextureId>,
@@ -32,10 +34,11 @@ pub(super) struct Textures<'f> {
 }
 
 impl<'f> Textures<'f> {
-    pub(super) fn new(files: &'f dyn Files, sources: &'f Sources) -> Textures<'f> {
+    pub(super) fn new(files: &'f dyn Files, sources: &'f Sources, decoded: &'f Decoded) -> Textures<'f> {
         Textures {
             files,
             sources,
+            decoded,
             textures: vec![],
             known: BTreeMap::new(),
             images: vec![],
@@ -109,8 +112,7 @@ impl<'f> Textures<'f> {
             Some(found) => found.clone(),
             None => {
                 let bytes = self.files.read(&path, MAX_FILE).map_err(refuse)?;
-                let found =
-                    Image::decode(&bytes).map(|image| self.add(image)).map_err(|error| error.to_string());
+                let found = self.decoded.image(&path, &bytes).map(|image| self.add(image));
                 self.read.insert(path, found.clone());
                 found
             }
@@ -124,9 +126,9 @@ impl<'f> Textures<'f> {
     }
 
     /// Two files may hold the same picture.
-    fn add(&mut self, image: Image) -> ImageId {
-        let place = self.images.iter().position(|known| **known == image).unwrap_or_else(|| {
-            self.images.push(Arc::new(image));
+    fn add(&mut self, image: Arc<Image>) -> ImageId {
+        let place = self.images.iter().position(|known| *known == image).unwrap_or_else(|| {
+            self.images.push(image);
             self.images.len() - 1
         });
         ImageId(place as u32)

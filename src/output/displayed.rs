@@ -6,6 +6,7 @@ use crate::develop::display;
 use crate::scene::Tonemap;
 use image::ExtendedColorType;
 use rayon::prelude::*;
+use std::io::Write;
 
 /// JPEG's quality: artefacts are not seen, at a fifth of a PNG's size.
 const QUALITY: u8 = 95;
@@ -16,18 +17,32 @@ pub(super) fn png(
     developing: (f64, Tonemap),
     depth: Depth,
 ) -> Result<Vec<u8>, CannotEncode> {
-    let (bits, bytes) = match depth {
-        Depth::Eight => (png::BitDepth::Eight, eight_bits(picture, developing)),
-        Depth::Sixteen => (png::BitDepth::Sixteen, sixteen_bits(picture, developing)),
+    let bytes = match depth {
+        Depth::Eight => eight_bits(picture, developing),
+        Depth::Sixteen => sixteen_bits(picture, developing),
     };
     let mut file = Vec::new();
-    let mut encoder = png::Encoder::new(&mut file, picture.size[0], picture.size[1]);
-    encoder.set_color(if picture.alpha.is_some() { png::ColorType::Rgba } else { png::ColorType::Rgb });
-    encoder.set_depth(bits);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    let encoder = png_encoder(&mut file, picture.size, picture.alpha.is_some(), depth);
     let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(&bytes));
     written.map_err(|error| CannotEncode(error.to_string()))?;
     Ok(file)
+}
+
+/// What writes a PNG in sRGB.
+pub(super) fn png_encoder<W: Write>(
+    to: W,
+    [width, height]: [u32; 2],
+    alpha: bool,
+    depth: Depth,
+) -> png::Encoder<'static, W> {
+    let mut encoder = png::Encoder::new(to, width, height);
+    encoder.set_color(if alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
+    encoder.set_depth(match depth {
+        Depth::Eight => png::BitDepth::Eight,
+        Depth::Sixteen => png::BitDepth::Sixteen,
+    });
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    encoder
 }
 
 /// A JPEG; without a profile it is in sRGB by convention.
@@ -52,12 +67,12 @@ pub(super) fn webp(picture: &Picture, developing: (f64, Tonemap)) -> Result<Vec<
 }
 
 /// Red, green, blue and, where there is one, alpha of each pixel in a byte each.
-fn eight_bits(picture: &Picture, developing: (f64, Tonemap)) -> Vec<u8> {
+pub(super) fn eight_bits(picture: &Picture, developing: (f64, Tonemap)) -> Vec<u8> {
     developed(picture, developing, |v| [quantise(v, 255) as u8])
 }
 
 /// Red, green, blue and, where there is one, alpha of each pixel in two bytes each, the greater first.
-fn sixteen_bits(picture: &Picture, developing: (f64, Tonemap)) -> Vec<u8> {
+pub(super) fn sixteen_bits(picture: &Picture, developing: (f64, Tonemap)) -> Vec<u8> {
     developed(picture, developing, |v| quantise(v, 65_535).to_be_bytes())
 }
 

@@ -5,6 +5,7 @@
 //! picture as developed for a display. Developing starts from the very `f32` values that the linear formats
 //! hold, so an EXR developed later gives the same bytes as a PNG written at once.
 
+pub mod animation;
 mod displayed;
 mod linear;
 mod openexr;
@@ -15,7 +16,7 @@ use crate::scene::Tonemap;
 use rayon::prelude::*;
 use std::fmt;
 
-pub use openexr::{decode as decode_exr, decode_words};
+pub use openexr::{DENOISED, decode as decode_exr, decode_shown, decode_words};
 
 /// The most pixels a picture in memory may have: 16384 × 8192.
 pub const MOST_PIXELS: u64 = 1 << 27;

@@ -5,6 +5,7 @@ use super::{
     unless_whole,
 };
 use crate::scene::Tonemap;
+use exr::image::read::specific_channels::ReadSpecificChannel;
 use exr::meta::MetaData;
 use exr::meta::attribute::{AttributeValue, Chromaticities, IntegerBounds, LineOrder, Text};
 use exr::meta::header::{ImageAttributes, LayerAttributes};
@@ -125,12 +126,35 @@ fn sort_header(file: &mut [u8]) -> Option<()> {
 /// Reads the first layer with channels R, G, B and maybe A, from any program. What is not a number becomes 0, what is
 /// infinite the greatest finite value.
 pub fn decode(file: &[u8]) -> Result<(Picture, Facts), CannotDecode> {
-    let refuse = |error: exr::error::Error| CannotDecode(error.to_string());
     refuse_large(file)?;
+    decode_colors(file, ["R", "G", "B"])
+}
+
+/// The channels of a picture whose noise was taken out, beside the picture as it was traced.
+pub const DENOISED: [&str; 3] = ["denoised.R", "denoised.G", "denoised.B"];
+
+/// The picture as a build shows it: that of the channels [`DENOISED`] where there are these, else as [`decode`] has it.
+pub fn decode_shown(file: &[u8]) -> Result<(Picture, Facts), CannotDecode> {
+    let meta = refuse_large(file)?;
+    let has = |name: &str| {
+        let mut channels = meta.headers.iter().flat_map(|header| &header.channels.list);
+        channels.any(|channel| channel.name.eq(name))
+    };
+    decode_colors(file, if DENOISED.into_iter().all(has) { DENOISED } else { ["R", "G", "B"] })
+}
+
+/// Reads channels of red, green and blue.
+fn decode_colors(file: &[u8], [r, g, b]: [&str; 3]) -> Result<(Picture, Facts), CannotDecode> {
+    let refuse = |error: exr::error::Error| CannotDecode(error.to_string());
     let image = read()
         .no_deep_data()
         .largest_resolution_level()
-        .rgba_channels(
+        .specific_channels()
+        .required(r)
+        .required(g)
+        .required(b)
+        .optional("A", 1.0)
+        .collect_pixels(
             |size, _| (size.width(), vec![[0.0f32; 3]; size.area()], vec![1.0f32; size.area()]),
             |(width, pixels, alpha), at, (r, g, b, a): (f32, f32, f32, f32)| {
                 let index = at.y() * *width + at.x();

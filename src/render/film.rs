@@ -114,6 +114,17 @@ impl Pixel {
         self.samples += other.samples;
     }
 
+    /// What is left without the samples of another, which are among these.
+    fn without(&self, other: &Pixel) -> Pixel {
+        Pixel {
+            sum: std::array::from_fn(|channel| self.sum[channel] - other.sum[channel]),
+            luminance_squares: self.luminance_squares - other.luminance_squares,
+            covered: self.covered - other.covered,
+            open: self.open - other.open,
+            samples: self.samples - other.samples,
+        }
+    }
+
     /// By the weights of the very samples there are, so that it is exactly 1 or 0 where all of them agree. A filter
     /// with negative weights may lead beyond these, and is cut.
     pub(super) fn alpha(&self) -> f64 {
@@ -269,6 +280,13 @@ impl Film {
     pub fn merge(&mut self, other: &Film) {
         assert_eq!(self.scale, other.scale, "films of different scales cannot be merged");
         self.merge_pixels(other.window, &other.pixels);
+    }
+
+    /// What is left without the samples of another film of the same window and scale, all of which this one holds.
+    pub(super) fn without(&self, other: &Film) -> Film {
+        debug_assert!(self.window == other.window && self.scale == other.scale);
+        let pixels = self.pixels.iter().zip(&other.pixels).map(|(all, some)| all.without(some)).collect();
+        Film { pixels, ..*self }
     }
 
     /// The least error that all but one in a hundred pixels keep, as shown on a display: half the span between

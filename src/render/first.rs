@@ -57,6 +57,13 @@ pub struct Firsts {
 }
 
 impl Firsts {
+    /// Those of some rays, in their order.
+    fn of<'r>(rays: impl Iterator<Item = &'r Ray>) -> Firsts {
+        let mut firsts = Firsts::default();
+        rays.for_each(|(weight, first)| firsts.add(f64::from(*weight), first.as_ref()));
+        firsts
+    }
+
     /// Adds a sample of a weight, and what it meets.
     pub(super) fn add(&mut self, weight: f64, first: Option<&First>) {
         let weight = weight.abs();
@@ -113,6 +120,14 @@ impl Firsts {
     }
 }
 
+/// Numbers of a pixel's guide: the normal, the albedo, and how near it is.
+pub const GUIDES: usize = 7;
+
+/// What tells the things of a picture apart, known long before its light is: of every pixel, row by row, the normal and the
+/// albedo as [`Firsts`] has them, and the nearness, 1 at the camera, 1/2 as far away as things are most typically, and 0 where
+/// nothing is met. Once by the rays with even numbers, and once by those with odd ones.
+pub type Guides = [Vec<[f32; GUIDES]>; 2];
+
 /// What the camera's rays of a window meet first.
 #[derive(Clone, Debug)]
 pub struct FirstHits {
@@ -147,39 +162,66 @@ impl Tracer<'_> {
         control: &Control,
     ) -> Result<FirstHits, Cancelled> {
         let samples = samples.clamp(1, MOST_FIRST_SAMPLES);
-        let tiles: Vec<Window> = window.tiles(TILE).collect();
-        let traced: Vec<Vec<Firsts>> =
-            tiles.par_iter().map(|tile| self.tile_of_firsts(*tile, samples, control)).collect();
-        if control.is_cancelled() {
-            return Err(Cancelled);
-        }
-        let mut pixels = vec![Firsts::default(); window.pixels()];
-        for (tile, traced) in tiles.iter().zip(traced) {
-            for (firsts, index) in traced.into_iter().zip(0..) {
-                let (x, y) = (tile.x + index % tile.width, tile.y + index / tile.width);
-                pixels[window.index(x, y)] = firsts;
-            }
-        }
+        let pixels = self.of_firsts(window, samples, control, &|rays| Firsts::of(rays.iter()))?;
         Ok(FirstHits { window, pixels })
     }
 
-    fn tile_of_firsts(&self, tile: Window, samples: u32, control: &Control) -> Vec<Firsts> {
+    /// Finds the guides of a window in the same way, by 2 samples of each pixel at least.
+    ///
+    /// # Errors
+    ///
+    /// If the control cancels.
+    pub fn guides(&self, window: Window, samples: u32, control: &Control) -> Result<Guides, Cancelled> {
+        let samples = samples.clamp(2, MOST_FIRST_SAMPLES);
+        let guide = |firsts: &Firsts| {
+            let (n, color) = (firsts.normal().unwrap_or(DVec3::ZERO), firsts.albedo());
+            let near = firsts.depth().map_or(0.0, |depth| self.size / (self.size + depth.max(0.0)));
+            [n.x, n.y, n.z, color.x, color.y, color.z, near].map(|v| v as f32)
+        };
+        let half = |rays: &[Ray], from: usize| guide(&Firsts::of(rays.iter().skip(from).step_by(2)));
+        let both = self.of_firsts(window, samples, control, &|rays| [half(rays, 0), half(rays, 1)])?;
+        Ok([0, 1].map(|half| both.iter().map(|pixel| pixel[half]).collect()))
+    }
+
+    /// Makes something of what so many rays of each pixel meet first, row by row.
+    fn of_firsts<T: Clone + Default + Send>(
+        &self,
+        window: Window,
+        samples: u32,
+        control: &Control,
+        made: &(dyn Fn(&[Ray]) -> T + Sync),
+    ) -> Result<Vec<T>, Cancelled> {
+        let tiles: Vec<Window> = window.tiles(TILE).collect();
+        let of_tile = |tile: &Window| -> Vec<T> {
+            self.rays_of_tile(*tile, samples, control).chunks_exact(samples as usize).map(made).collect()
+        };
+        let traced: Vec<Vec<T>> = tiles.par_iter().map(of_tile).collect();
+        if control.is_cancelled() {
+            return Err(Cancelled);
+        }
+        let mut pixels = vec![T::default(); window.pixels()];
+        for (tile, traced) in tiles.iter().zip(traced) {
+            for (pixel, index) in traced.into_iter().zip(0..) {
+                let (x, y) = (tile.x + index % tile.width, tile.y + index / tile.width);
+                pixels[window.index(x, y)] = pixel;
+            }
+        }
+        Ok(pixels)
+    }
+
+    /// The rays of a tile, pixel by pixel.
+    fn rays_of_tile(&self, tile: Window, samples: u32, control: &Control) -> Vec<Ray> {
         let count = tile.pixels() * samples as usize;
         let mut rays = Rays { tile, samples, next: 0, weights: vec![0.0; count], control };
         let mut meetings = Meetings { camera: &self.scene.camera, firsts: vec![None; count] };
         let view = View::new(&self.eye, self.scene.trace.seed).by_luck();
         self.level.run(FirstTask { tracer: self, view: &view, rays: &mut rays, meetings: &mut meetings });
-        let each: Vec<_> = rays.weights.into_iter().zip(meetings.firsts).collect();
-        let sums = each.chunks_exact(samples as usize).map(|samples| {
-            let mut firsts = Firsts::default();
-            for (weight, first) in samples {
-                firsts.add(f64::from(*weight), first.as_ref());
-            }
-            firsts
-        });
-        sums.collect()
+        rays.weights.into_iter().zip(meetings.firsts).collect()
     }
 }
+
+/// The weight of a camera ray in its pixel, and what it meets first.
+type Ray = (f32, Option<First>);
 
 struct FirstTask<'a, 's, 'c> {
     tracer: &'a Tracer<'s>,

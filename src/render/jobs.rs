@@ -10,11 +10,13 @@ use crate::color::Rgb;
 pub(super) struct Tile<'a> {
     window: Window,
     samples: std::ops::Range<u32>,
+    /// Into how many parts samples are told, by their numbers.
+    parts: u32,
     /// Pixel and sample that come next.
     next: (u32, u32),
     scale: f64,
     unit: f64,
-    /// Row by row.
+    /// Row by row, one part after the other.
     pub(super) pixels: Vec<Pixel>,
     control: &'a Control,
 }
@@ -23,19 +25,20 @@ impl Tile<'_> {
     pub(super) fn new(
         window: Window,
         samples: std::ops::Range<u32>,
-        scale: f64,
-        unit: f64,
+        parts: u32,
+        (scale, unit): (f64, f64),
         control: &Control,
     ) -> Tile<'_> {
-        let pixels = vec![Pixel::default(); window.pixels()];
-        Tile { window, next: (0, samples.start), samples, scale, unit, pixels, control }
+        let pixels = vec![Pixel::default(); window.pixels() * parts as usize];
+        Tile { window, next: (0, samples.start), samples, parts, scale, unit, pixels, control }
     }
 }
 
 impl Jobs for Tile<'_> {
     fn next(&mut self) -> Option<Job> {
         let (pixel, sample) = self.next;
-        if pixel as usize >= self.pixels.len() {
+        let pixels = self.window.width * self.window.height;
+        if pixel >= pixels {
             return None;
         }
         self.next.1 += 1;
@@ -48,7 +51,8 @@ impl Jobs for Tile<'_> {
             }
         }
         let (x, y) = (pixel % self.window.width, pixel / self.window.width);
-        Some(Job { x: self.window.x + x, y: self.window.y + y, sample, pixel })
+        let place = sample % self.parts * pixels + pixel;
+        Some(Job { x: self.window.x + x, y: self.window.y + y, sample, pixel: place })
     }
 
     fn finish(&mut self, arrived: &Arrived) {

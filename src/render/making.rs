@@ -6,7 +6,7 @@
 use super::control::{Cancelled, Control};
 use super::film::{Film, Window};
 use super::halt::{BLOCK, Limit, Limits, noisy};
-use super::{PASS, Prepass, Rendered, Shown, Tracer};
+use super::{PASS, Prepass, Rendered, Shown, Sums, Tracer};
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
@@ -19,6 +19,8 @@ const FIRST_PATHS: u64 = 1 << 19;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Making {
     film: Film,
+    /// The sums of the samples with even numbers alone, for who asks: see [`Making::in_halves`].
+    even: Option<Film>,
     /// The number of each pixel's first sample.
     start: u32,
     /// Those of the film's window, row by row.
@@ -53,7 +55,14 @@ impl Making {
     /// The same of a share of the samples, from this one on.
     pub fn from_sample(window: Window, scale: f64, start: u32) -> Making {
         let blocks = window.tiles(BLOCK).map(|window| Block { window, samples: 0, aim: 0 }).collect();
-        Making { film: Film::new(window, scale), start, blocks }
+        Making { film: Film::new(window, scale), even: None, start, blocks }
+    }
+
+    /// The same of a picture without samples, with the sums of every other sample kept apart too: two pictures of the same light
+    /// tell noise from what is there. It takes as much memory again.
+    pub fn in_halves(self) -> Making {
+        let even = Film::new(self.film.window(), self.film.scale());
+        Making { even: Some(even), ..self }
     }
 
     /// One that was put aside: its film, the number of its first sample, and what each pixel was on the way to, row by row.
@@ -70,12 +79,25 @@ impl Making {
             Some(Block { window: window_of, samples, aim })
         };
         let blocks = window.tiles(BLOCK).map(block).collect::<Option<Vec<Block>>>()?;
-        Some(Making { film, start, blocks })
+        Some(Making { film, even: None, start, blocks })
     }
 
     /// Its sums.
     pub fn film(&self) -> &Film {
         &self.film
+    }
+
+    /// Whether every other sample is kept apart.
+    pub fn is_in_halves(&self) -> bool {
+        self.even.is_some()
+    }
+
+    /// The sums of the samples with even numbers and of those with odd ones, which together are [`Making::film`] to the bit;
+    /// none unless it is [`Making::in_halves`].
+    pub fn halves(&self) -> Option<[Film; 2]> {
+        let even = self.even.clone()?;
+        let odd = self.film.without(&even);
+        Some([even, odd])
     }
 
     /// Its sums, and nothing else.
@@ -293,7 +315,8 @@ impl Tracer<'_> {
             control.plan(making.paths_to(u32::MAX));
             while let Some(step) = making.next(pace.fit(STEP).unwrap_or(FIRST_PATHS)) {
                 let start = pace.elapsed(control);
-                self.trace_step(&mut making.film, &step.windows, step.samples.clone(), control)?;
+                let sums = Sums { film: &mut making.film, even: making.even.as_mut() };
+                self.trace_step(sums, &step.windows, step.samples.clone(), control)?;
                 making.taken(&step);
                 let pixels: usize = step.windows.iter().map(Window::pixels).sum();
                 let time = pace.elapsed(control).saturating_sub(start);

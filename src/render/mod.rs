@@ -181,6 +181,26 @@ pub struct Shown {
     pub tonemap: Tonemap,
 }
 
+/// Where samples are added up.
+struct Sums<'f> {
+    /// All of them.
+    film: &'f mut Film,
+    /// Those with even numbers once more, if they are wanted apart.
+    even: Option<&'f mut Film>,
+}
+
+impl Sums<'_> {
+    /// Adds the pixels of a tile: of all samples, or where they are wanted apart, those of even samples and then of odd ones.
+    fn add(&mut self, tile: Window, pixels: &[Pixel]) {
+        for part in pixels.chunks(tile.pixels().max(1)) {
+            self.film.merge_pixels(tile, part);
+        }
+        if let Some(even) = &mut self.even {
+            even.merge_pixels(tile, &pixels[..tile.pixels()]);
+        }
+    }
+}
+
 /// Pixels along the side of a tile.
 const TILE: u32 = 16;
 /// Samples of a pixel in one pass over the picture.
@@ -305,19 +325,19 @@ impl<'s> Tracer<'s> {
     ) -> Result<(), Cancelled> {
         let pixels: u64 = windows.iter().map(|window| window.pixels() as u64).sum();
         control.plan(pixels * u64::from(samples.end - samples.start));
-        self.trace_step(film, windows, samples, control)
+        self.trace_step(Sums { film, even: None }, windows, samples, control)
     }
 
     /// The same for paths that have been planned.
     fn trace_step(
         &self,
-        film: &mut Film,
+        mut sums: Sums,
         windows: &[Window],
         samples: std::ops::Range<u32>,
         control: &Control,
     ) -> Result<(), Cancelled> {
         let tiles: Vec<Window> = windows.iter().flat_map(|window| window.tiles(TILE)).collect();
-        let scale = film.scale();
+        let (scale, parts) = (sums.film.scale(), if sums.even.is_some() { 2 } else { 1 });
         let view = View::new(&self.eye, self.scene.trace.seed);
         for start in samples.clone().step_by(PASS as usize) {
             let pass = start..samples.end.min(start + PASS);
@@ -328,7 +348,7 @@ impl<'s> Tracer<'s> {
                     if control.is_cancelled() {
                         return Vec::new();
                     }
-                    let mut jobs = Tile::new(*tile, pass.clone(), scale, self.unit, control);
+                    let mut jobs = Tile::new(*tile, pass.clone(), parts, (scale, self.unit), control);
                     self.trace(&view, &mut jobs);
                     jobs.pixels
                 })
@@ -337,7 +357,7 @@ impl<'s> Tracer<'s> {
                 return Err(Cancelled);
             }
             for (tile, pixels) in tiles.iter().zip(traced) {
-                film.merge_pixels(*tile, &pixels);
+                sums.add(*tile, &pixels);
             }
         }
         Ok(())

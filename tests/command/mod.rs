@@ -1,6 +1,8 @@
 //! The binary as its users run it: what it writes where, and how it ends.
 
+mod animation;
 mod bad_input;
+mod denoise;
 mod keeping;
 mod layout;
 mod lsp;

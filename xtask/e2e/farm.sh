@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # A real Slurm on this machine with four workers: a picture in four shares by the scripts of examples/cluster, one worker
-# killed midway, its share submitted again, and the same bytes as one process with one thread makes alone.
+# killed midway, its share submitted again, and the same bytes as one process with one thread makes alone; and a film in three runs
+# of frames.
 # Usage: farm.sh RTC ROOT, in an empty folder. Needs munged, slurmctld, slurmd and sbatch, and root, as which they run.
 set -euo pipefail
 export PATH=$PATH:/usr/sbin
@@ -116,10 +117,21 @@ merge=$(sbatch --parsable --dependency="afterok:$again,afterok:${array}_1,aftero
   --output="$desk/merge.log" "$scripts/merge.sbatch" parts all.exr)
 looked() { "$rtc" merge --partial parts/*.exr -o look.png; }
 wait_for 300 "a first share to look at" looked
-gone() { [ -z "$(squeue --noheader --job="$merge" 2>/dev/null)" ]; }
-wait_for 400 "the merge, job $merge" gone
+gone() { [ -z "$(squeue --noheader --job="$1" 2>/dev/null)" ]; }
+wait_for 400 "the merge, job $merge" gone "$merge"
 sed 's/^/  /' "$desk/merge.log"
 
 "$rtc" build "$scene" "${flags[@]}" -j 1 -o one.exr --quiet
 cmp one.exr all.exr
 echo "  the same bytes as one process with one thread makes alone"
+
+# A film by runs of its frames; whoever puts it together makes none of them again.
+film=("$root/examples/turntable.rt" --frames 7 --sweep "angle = 0deg until 360deg" --size 80x60 --samples 8)
+runs=$(sbatch --parsable --array=1-3 --exclude="$worker" --output="$desk/frames-%a.log" \
+  "$scripts/frames.sbatch" "${film[0]}" 7 frames "${film[@]:3}")
+wait_for 300 "the frames, job $runs" gone "$runs"
+"$rtc" build "${film[@]}" -o 'frames/{06}.exr' --resume -o farm.webp 2>film.log
+[ "$(grep -c 'is done' film.log)" = 7 ] || { echo "not all frames were done"; cat film.log; exit 1; }
+"$rtc" build "${film[@]}" -o one.webp -j 1 --quiet
+cmp one.webp farm.webp
+echo "  a film of seven frames in three runs, to the same bytes"

@@ -4,6 +4,7 @@
 //! Nothing is skipped quietly. A tool that is missing fails the step that needs it, with its name.
 
 mod compare;
+mod denoise;
 mod editors;
 mod export;
 mod lsp;
@@ -54,6 +55,11 @@ cargo xtask compare [--rounds N] [--budget SECONDS] [SCENE…]
 
   renders scenes in turns with Mitsuba and POV-Ray, best on an idle machine, and prints what each took; the rounds of
   a scene end when there were enough or its seconds are spent, and references are kept in target/compare
+
+cargo xtask denoise
+
+  renders scenes at few and many samples, and prints how far they are from a converged picture with their noise and without
+  (some ten minutes on two cores)
 
 cargo xtask latency [ROUNDS]
 
@@ -109,6 +115,7 @@ fn main() -> ExitCode {
         Some((task, steps)) if task == "e2e" => e2e(steps),
         Some((task, [])) if task == "gallery" => gallery(),
         Some((task, [])) if task == "many" => many(),
+        Some((task, [])) if task == "denoise" => denoise::table(),
         Some((task, [])) if task == "grammar" => editors::grammar(),
         Some((task, arguments)) if task == "compare" => compare::compare(arguments),
         Some((task, arguments)) if task == "lsp" => lsp::latency(arguments),

@@ -182,6 +182,20 @@ pub(in crate::check) fn malformed_setting(span: Span) -> Diagnostic {
         .help("such as `--set count=12` or `--set \"size=15cm\"`")
 }
 
+/// A `--sweep` that is not `name = a to b`.
+pub(in crate::check) fn malformed_sweep(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0503, "a sweep is a name, `=`, and two values with `to` or `until` between", span)
+        .at("not of this form")
+        .help("such as `--sweep \"t = 0 to 1\"`; `\"angle = 0deg until 360deg\"` ends a frame before 360deg, for a loop")
+}
+
+/// A sweep of a param whose values have nothing between them.
+pub(in crate::check) fn sweeps_nothing(name: &str, what: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0503, format!("`{name}` is {what}, and nothing lies between two of these"), span)
+        .at("cannot be swept")
+        .help("sweep a number and choose by it in the scene: `if t < 0.5 then … else …`")
+}
+
 pub(in crate::check) fn table_arguments(span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0201, "`table` wants the path of a file, written out", span)
         .at("no path")

@@ -56,7 +56,7 @@ impl Reading {
         let Reading { max_things: things, max_levels: levels, max_items: items, max_steps: steps, .. } =
             *self;
         let limits = Limits { things, levels, items, steps, text: self.limits() };
-        Options { overrides, set: self.set.clone(), limits }
+        Options { overrides, set: self.set.clone(), limits, ..Options::default() }
     }
 
     /// What reading the files may take.

@@ -1,6 +1,8 @@
 //! The same bits whatever runs it, and control over it.
 
 use super::*;
+use crate::render::halt::Limits;
+use crate::render::making::Making;
 use std::sync::Arc;
 
 fn small_room() -> Scene {
@@ -109,6 +111,28 @@ fn check_crops(scene: &Scene) {
     halves.merge(&render(scene, Window { x: 0, y: 0, width: 48, height: 13 }, Target::Samples(3)).film);
     halves.merge(&render(scene, Window { x: 0, y: 13, width: 48, height: 23 }, Target::Samples(3)).film);
     assert_eq!(halves, whole);
+}
+
+#[test]
+fn halves_of_the_samples_add_up_to_the_whole() {
+    let scene = small_room();
+    let tracer = Tracer::new(&scene);
+    let window = Window { x: 5, y: 3, width: 37, height: 20 };
+    for limits in [Target::Samples(7), Target::Noise(0.2)].map(Limits::from) {
+        let made = |mut making: Making| {
+            tracer.go_on(&mut making, &limits, SHOWN, &Control::new(), &mut |_| {}).expect("nobody cancels");
+            making
+        };
+        let (whole, halved) =
+            (made(Making::new(window, 65_536.0)), made(Making::new(window, 65_536.0).in_halves()));
+        assert_eq!((whole.film(), whole.halves()), (halved.film(), None));
+        let [mut even, odd] = halved.halves().expect("they are kept");
+        let samples = whole.film().samples(20, 10);
+        assert_eq!([even.samples(20, 10), odd.samples(20, 10)], [samples.div_ceil(2), samples / 2]);
+        assert_ne!(even.mean(20, 10), odd.mean(20, 10));
+        even.merge(&odd);
+        assert_eq!(even, *whole.film());
+    }
 }
 
 #[test]

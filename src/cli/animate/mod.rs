@@ -1,0 +1,276 @@
+//! `rtc build --sweep … --frames N`: films.
+//!
+//! A frame is the picture that `rtc build --set` makes of the values it has, but for the exposure where the camera leaves it
+//! open: that is chosen once, by the first frame of the whole film, so that a film does not flicker, whoever makes which of its
+//! frames. What frames have in common is read, parsed, decoded and built once.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`orders`] | what the flags ask for |
+//! | [`names`], [`only`] | where frames go, and which are made |
+//! | [`mark`] | which frames are done |
+//! | [`sink`], [`video`] | films in one file |
+
+mod mark;
+mod names;
+mod only;
+mod orders;
+mod sink;
+mod video;
+
+use super::args::{Build, Resume};
+use super::build::{self, Context};
+use super::files::Disk;
+use super::interrupt::Interrupt;
+use super::messages::Messenger;
+use super::progress::duration;
+use super::target::Target;
+use super::terminal::Terminal;
+use super::trace::{Before, Plan, Traced, trace};
+use super::{Exit, Problem, input, keep, scene as scenes};
+use mark::Found;
+pub use names::has_number;
+use orders::Orders;
+use rt_lang::check::Moment;
+use rt_lang::diagnostic::Diagnostic;
+use rt_lang::lower::Overrides;
+use rt_lang::output::animation::Reel;
+use rt_lang::output::{Facts, Format, Picture, decode_shown};
+use rt_lang::render::Tracer;
+use rt_lang::scene::{Background, Scene};
+use rt_lang::{Compiled, Finding, Options, Series};
+use sink::Sink;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::time::Instant;
+
+/// Makes the frames in turn, and the films that they are in.
+pub fn run(arguments: &Build, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
+    let orders = Orders::new(arguments)?;
+    let context = Context::new(arguments, terminal, interrupt)?;
+    let mut messenger = Messenger::new(&arguments.messages, terminal, arguments.quiet);
+    let ended = film(&context, &orders, &mut messenger);
+    messenger.finish()?;
+    ended
+}
+
+fn film(context: &Context, orders: &Orders, messenger: &mut Messenger) -> Result<Exit, Problem> {
+    let Build { reading, taking, halting, animating, .. } = context.arguments;
+    let start = Instant::now();
+    let (disk, input) = scenes::open(&orders.scene, reading)?;
+    if let Some(refused) = input.refused {
+        return messenger.say(&[refused], &input.sources);
+    }
+    let overrides = Overrides { limited: halting.time.is_some(), ..taking.overrides() };
+    let options = Options { sweep: animating.sweep.clone(), ..reading.options(overrides) };
+    let series = Series::new(&disk, input.sources, input.id, options);
+    let mut studio = Studio {
+        context,
+        orders,
+        disk: &disk,
+        series,
+        messenger,
+        said: BTreeSet::new(),
+        exposure: None,
+        before: Before::default(),
+        worst: Exit::Done,
+    };
+    match studio.shoot() {
+        Ok(Some(films)) => {
+            if !context.arguments.quiet {
+                studio.sum_up(&films, start);
+            }
+            Ok(studio.worst)
+        }
+        Ok(None) => Ok(Exit::Diagnostics),
+        Err(problem) => Err(problem),
+    }
+}
+
+/// A film in the making.
+struct Studio<'a, 'm> {
+    context: &'a Context<'a>,
+    orders: &'a Orders,
+    disk: &'a Disk,
+    series: Series<'a>,
+    messenger: &'a mut Messenger<'m>,
+    /// What was said, of which frame ever: its code and place.
+    said: BTreeSet<(&'static str, String, u32)>,
+    /// In stops, where the first frame chose it for all.
+    exposure: Option<f64>,
+    before: Before,
+    worst: Exit,
+}
+
+/// What came of a frame.
+enum Shot {
+    /// It was made.
+    Made(Picture, Facts),
+    /// It was there, in these files.
+    There(Vec<Target>),
+    /// The scene has errors.
+    Failed,
+}
+
+impl Studio<'_, '_> {
+    /// Makes all frames that are asked for, and gives a line about each film that is done. None where the scene has errors.
+    fn shoot(&mut self) -> Result<Option<Vec<String>>, Problem> {
+        let orders = self.orders;
+        let Some(first) = self.compile(1)? else { return Ok(None) };
+        build::refuse_inputs_as_outputs(&self.disk.read_paths(), &orders.paths())?;
+        let Some(scene) = &first.scene else { return Ok(None) };
+        self.choose_exposure(scene);
+        // Better now than after a night.
+        if orders.of > 1 && self.compile(orders.of)?.is_none() {
+            return Ok(None);
+        }
+        let mut films = self.open(scene)?;
+        orders.make_folder()?;
+        let lines = if self.context.arguments.quiet { &[][..] } else { &first.notes };
+        lines.iter().for_each(|note| self.context.terminal.line(note));
+        drop(first);
+        for &number in &orders.numbers {
+            let (picture, facts) = match self.frame(number)? {
+                Shot::Made(picture, facts) => (picture, facts),
+                Shot::There(_) if films.is_empty() => continue,
+                Shot::There(targets) => read(&targets)?,
+                Shot::Failed => return Ok(None),
+            };
+            let threads = &self.context.threads;
+            threads.install(|| films.iter_mut().try_for_each(|film| film.add(&picture, &facts)))?;
+        }
+        films.into_iter().map(Sink::finish).collect::<Result<_, _>>().map(Some)
+    }
+
+    /// Compiles a frame, and says of it what was not said of another. None where it has errors.
+    fn compile(&mut self, number: u32) -> Result<Option<Compiled>, Problem> {
+        let Orders { of, .. } = *self.orders;
+        let mut compiled = self.series.at(Moment { index: number - 1, of });
+        let diagnostics = std::mem::take(&mut compiled.diagnostics);
+        let ended = self.say(&diagnostics)?;
+        if let (Exit::Done, Some(scene)) = (ended, &mut compiled.scene) {
+            scene.develop.exposure = scene.develop.exposure.or(self.exposure);
+            return Ok(Some(compiled));
+        }
+        self.context.terminal.line(&format!("frame {number} of {of} cannot be made"));
+        Ok(None)
+    }
+
+    fn say(&mut self, diagnostics: &[Diagnostic]) -> Result<Exit, Problem> {
+        let sources = self.series.sources();
+        let new = |diagnostic: &&Diagnostic| {
+            let place = diagnostic.primary.span;
+            self.said.insert((diagnostic.code.as_str(), sources.get(place.source).name.clone(), place.start))
+        };
+        let new: Vec<Diagnostic> = diagnostics.iter().filter(new).cloned().collect();
+        let ended = if new.is_empty() { Exit::Done } else { self.messenger.say(&new, sources)? };
+        self.worst = self.worst.max(ended);
+        Ok(ended)
+    }
+
+    /// Takes the first look that chooses the exposure of all frames, unless the scene or a flag gives it.
+    fn choose_exposure(&mut self, scene: &Scene) {
+        if scene.develop.exposure.is_some() {
+            return;
+        }
+        let (stops, structure) = self.context.threads.install(|| {
+            let tracer = Tracer::at_once(scene, None);
+            (build::chosen_stops(&tracer.prepass()), tracer.into_structure())
+        });
+        self.exposure = Some(stops);
+        self.before.structure = Some(structure);
+    }
+
+    /// Makes sure before any work that every film can be made and written.
+    fn open(&self, scene: &Scene) -> Result<Vec<Sink>, Problem> {
+        let Context { arguments, interrupt, .. } = *self.context;
+        let window = build::window(scene, arguments.crop)?;
+        let reel = Reel {
+            size: [window.width, window.height],
+            transparent: scene.trace.background == Background::Transparent,
+            frames: self.orders.numbers.len() as u32,
+            rate: self.orders.rate,
+        };
+        let (depth, keeps) = (arguments.taking.look.bits, arguments.keeping.keeps());
+        let films = self.orders.films.iter();
+        films.map(|(path, form)| Sink::open(path, *form, (reel, depth), keeps, interrupt)).collect()
+    }
+
+    /// Makes a frame, unless it is done.
+    fn frame(&mut self, number: u32) -> Result<Shot, Problem> {
+        let start = Instant::now();
+        let Context { arguments, interrupt, terminal, ref threads, .. } = *self.context;
+        let Some(compiled) = self.compile(number)? else { return Ok(Shot::Failed) };
+        let targets = self.orders.targets(number)?;
+        let Some(from) = compiled.provenance(self.series.sources()) else { return Ok(Shot::Failed) };
+        let (scene, depth, keeping) = (from.scene, arguments.taking.look.bits, &arguments.keeping);
+        let window = build::window(scene, arguments.crop)?;
+        let plan = Plan::new(arguments, from, window, &targets)?.of_frame();
+        let subject = mark::subject(scene, &plan, &arguments.aov, depth);
+        let mut anew = String::new();
+        if keeping.keeps() && keeping.resume != Some(Resume::Never) {
+            match mark::find(&subject, &targets)? {
+                Found::Nothing => {}
+                Found::Other(why) => anew = format!(", made anew: {why}"),
+                Found::Done => {
+                    if !arguments.quiet {
+                        terminal.line(&format!("{} is done", self.orders.name(number)));
+                    }
+                    return Ok(Shot::There(targets));
+                }
+            }
+        }
+        let staged = build::stage(self.context, &targets, scene, window)?;
+        let name = format!("{} {number}/{}", self.orders.scene.display(), self.orders.of);
+        let traced =
+            threads.install(|| trace(self.context, Path::new(&name), plan, Some(&mut self.before)))?;
+        threads
+            .install(|| build::write(traced.versions(), &traced.facts, &traced.channels, depth, staged))?;
+        if keeping.keeps() {
+            mark::record(&subject, &targets, interrupt)?;
+            // What is done needs no samples any more.
+            let _ = fs::remove_file(keep::beside(&targets)?);
+        }
+        let findings = self.findings(&compiled, scene, &traced);
+        self.say(&findings)?;
+        if !arguments.quiet {
+            let (samples, time) = (build::samples(&traced), duration(start.elapsed()));
+            terminal.line(&format!("{}: {samples} in {time}{anew}", self.orders.name(number)));
+        }
+        let shown = traced.denoised.map_or(traced.picture, |denoised| denoised.picture);
+        Ok(Shot::Made(shown, traced.facts))
+    }
+
+    /// What is probably not meant in a frame. An exposure that another frame chose may well burn this one out.
+    fn findings(&self, compiled: &Compiled, scene: &Scene, traced: &Traced) -> Vec<Diagnostic> {
+        let limited = self.context.arguments.taking.samples.is_some();
+        let findings = build::findings(scene, traced, limited).into_iter();
+        let findings = findings
+            .filter(|finding| self.exposure.is_none() || !matches!(finding, Finding::BurntOut { .. }));
+        findings.filter_map(|finding| compiled.judge(&finding)).collect()
+    }
+
+    fn sum_up(&self, films: &[String], start: Instant) {
+        let terminal = self.context.terminal;
+        films.iter().for_each(|film| terminal.line(film));
+        let exposure = self.exposure.map_or(String::new(), |stops| {
+            format!(
+                "; exposure chosen by frame 1 for all; to keep it, write `exposure: {stops}` in the camera"
+            )
+        });
+        let (made, of) = (self.orders.numbers.len(), self.orders.of);
+        let which =
+            if made == of as usize { format!("{of} frames") } else { format!("{made} of {of} frames") };
+        terminal.line(&format!("{which} in {}{exposure}", duration(start.elapsed())));
+    }
+}
+
+/// A frame that was there. One that goes into a film is kept as an EXR, if it is kept.
+fn read(targets: &[Target]) -> Result<(Picture, Facts), Problem> {
+    let exr = targets.iter().find(|target| target.format == Format::Exr);
+    let exr = exr.ok_or_else(|| Problem::new("no EXR holds the frame"))?;
+    let bytes = input::read_bytes(&exr.path, keep::LARGEST)?;
+    decode_shown(&bytes)
+        .map_err(|reason| Problem::new(format!("`{}` cannot be read: {reason}", exr.path.display())))
+}

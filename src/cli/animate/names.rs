@@ -1,0 +1,239 @@
+//! Where the frames of a film go: a file each, with the frame's number in its name, or one file for all.
+
+use super::super::Problem;
+use super::super::input::is_standard;
+use super::super::target::Target;
+use rt_lang::output::Format;
+use rt_lang::output::animation::Motion;
+use std::path::{Path, PathBuf};
+
+/// What `-o` means where there are frames.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Output {
+    /// A picture a frame.
+    Each(Pattern),
+    /// A film.
+    Film(PathBuf, Form),
+}
+
+/// How a film is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// Here.
+    Own(Motion),
+    /// By ffmpeg, in the container of this name.
+    Video(&'static str),
+}
+
+/// The names of pictures: a path with the place of a number.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pattern {
+    before: String,
+    /// The least digits of the number.
+    width: usize,
+    after: String,
+}
+
+/// The containers that ffmpeg is asked for, with its own names of them, by extension.
+const CONTAINERS: [(&str, &str); 4] = [("mp4", "mp4"), ("mov", "mov"), ("mkv", "matroska"), ("webm", "webm")];
+
+/// The most digits of a number.
+const MOST_DIGITS: usize = 9;
+
+impl Output {
+    /// Reads the value of `-o`.
+    pub fn from_argument(path: &Path) -> Result<Output, Problem> {
+        let text = path.to_string_lossy();
+        let form = Form::of(path);
+        match (Pattern::in_name(&text)?, form) {
+            (Some(_), Some(Form::Video(_))) => {
+                let problem = Problem::new(format!("`{text}` is one film, which has no frame's number"));
+                Err(problem.help("leave the braces out; a picture a frame has one: `-o frame.{04}.png`"))
+            }
+            (Some(pattern), _) => {
+                // What is wrong with the format, the first frame shows.
+                Target::from_argument(&pattern.path(1)).map(|_| Output::Each(pattern))
+            }
+            (None, Some(form)) => Ok(Output::Film(path.into(), form)),
+            (None, None) => Err(not_a_film(path, &text)),
+        }
+    }
+
+    /// The film beside a scene.
+    pub fn beside(scene: &Path) -> Output {
+        Output::Film(scene.with_extension("apng"), Form::Own(Motion::Apng))
+    }
+}
+
+impl Form {
+    /// By the extension, or by what stands before `:-`. An animated PNG may be called a PNG; `-` is one.
+    fn of(path: &Path) -> Option<Form> {
+        if is_standard(path) {
+            return Some(Form::Own(Motion::Apng));
+        }
+        let text = path.to_str().unwrap_or_default();
+        let standard = text.strip_suffix(":-");
+        let extension = standard.or_else(|| path.extension()?.to_str())?.to_ascii_lowercase();
+        match extension.as_str() {
+            "apng" | "png" => Some(Form::Own(Motion::Apng)),
+            "webp" => Some(Form::Own(Motion::WebP)),
+            video if standard.is_none() => {
+                CONTAINERS.iter().find(|(name, _)| *name == video).map(|(_, own)| Form::Video(own))
+            }
+            _ => None,
+        }
+    }
+
+    /// As one calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Form::Own(Motion::Apng) => "animated PNG",
+            Form::Own(Motion::WebP) => "animated WebP",
+            Form::Video(_) => "video",
+        }
+    }
+}
+
+/// The path that a film on standard output or in a file has for who writes it.
+pub fn place(path: &Path) -> PathBuf {
+    let standard = path.to_str().is_some_and(|text| text.ends_with(":-"));
+    if standard { "-".into() } else { path.into() }
+}
+
+/// A name without a number whose format holds one picture, or none.
+fn not_a_film(path: &Path, text: &str) -> Problem {
+    let extension = path.extension().map(|extension| extension.to_string_lossy().into_owned());
+    let known = extension.as_deref().and_then(Format::from_extension);
+    match (known, extension) {
+        (Some(_), Some(extension)) => {
+            let stem = text.strip_suffix(&format!(".{extension}")).unwrap_or(text);
+            Problem::new(format!("all frames would go to the one picture `{text}`")).help(format!(
+                "say where the frame's number goes: `-o {stem}.{{04}}.{extension}`; or make a film: `-o {stem}.webp`"
+            ))
+        }
+        (None, _) if text.ends_with(":-") || extension_is_missing(path) => {
+            Problem::new(format!("`{text}` does not say the format of a film")).help(FORMS)
+        }
+        _ => Problem::new(format!("`{text}` is in no format of films")).help(FORMS),
+    }
+}
+
+fn extension_is_missing(path: &Path) -> bool {
+    path.extension().is_none()
+}
+
+const FORMS: &str =
+    "films are apng, webp, mp4, mov, mkv and webm; a picture a frame has its number: `-o frame.{04}.png`";
+
+impl Pattern {
+    /// The pattern of a name; none where it has no braces.
+    fn in_name(text: &str) -> Result<Option<Pattern>, Problem> {
+        if let Some(foreign) = foreign(text) {
+            let problem = Problem::new(format!("`{foreign}` is no place for a frame's number"));
+            return Err(problem.help("write `{04}`: four digits, with zeros before"));
+        }
+        let Some((before, rest)) = text.split_once('{') else { return Ok(None) };
+        let Some((inside, after)) = rest.split_once('}') else {
+            let problem = Problem::new(format!("the `{{` of `{text}` is not closed"));
+            return Err(problem.help("the place of a frame's number is `{04}`"));
+        };
+        if after.contains('{') {
+            let problem = Problem::new(format!("`{text}` has two places for the frame's number"));
+            return Err(problem.help("keep one of them"));
+        }
+        let digits = inside.is_empty() || inside.bytes().all(|byte| byte.is_ascii_digit());
+        let width = if inside.is_empty() { Some(1) } else { inside.parse().ok() };
+        match width.filter(|width| digits && (1..=MOST_DIGITS).contains(width)) {
+            Some(width) => Ok(Some(Pattern { before: before.into(), width, after: after.into() })),
+            None => {
+                let problem = Problem::new(format!("`{{{inside}}}` is no place for a frame's number"));
+                Err(problem.help("write `{04}` for four digits with zeros before, or `{}` for none"))
+            }
+        }
+    }
+
+    /// The file of a frame.
+    pub fn path(&self, number: u32) -> PathBuf {
+        let Pattern { before, width, after } = self;
+        format!("{before}{number:0width$}{after}").into()
+    }
+
+    /// Where a picture goes.
+    pub fn target(&self, number: u32) -> Result<Target, Problem> {
+        Target::from_argument(&self.path(number))
+    }
+}
+
+/// Whether a name has the place of a frame's number, so that frames were probably meant.
+pub fn has_number(path: &Path) -> bool {
+    path.to_str().is_some_and(|text| matches!(Pattern::in_name(text), Ok(Some(_))))
+}
+
+/// The place of a number as other programs write it: `%04d` or `####`.
+fn foreign(text: &str) -> Option<&str> {
+    if let Some(start) = text.find("##") {
+        let rest = &text[start..];
+        return Some(&rest[..rest.find(|c| c != '#').unwrap_or(rest.len())]);
+    }
+    let (start, _) = text.match_indices('%').find(|(start, _)| {
+        text[start + 1..].trim_start_matches(|c: char| c.is_ascii_digit()).starts_with('d')
+    })?;
+    let rest = &text[start..];
+    Some(&rest[..rest.find('d').map_or(rest.len(), |end| end + 1)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Output, String> {
+        Output::from_argument(Path::new(text))
+            .map_err(|problem| format!("{} / {}", problem.message, problem.help.unwrap_or_default()))
+    }
+
+    #[test]
+    fn a_number_stands_where_the_braces_are() {
+        let path = |text: &str| match read(text) {
+            Ok(Output::Each(pattern)) => pattern.path(7).display().to_string(),
+            other => panic!("{text}: {other:?}"),
+        };
+        assert_eq!(path("out.{04}.exr"), "out.0007.exr");
+        assert_eq!(path("{}.png"), "7.png");
+        assert_eq!(path("a{2}b/c.jpg"), "a07b/c.jpg");
+    }
+
+    #[test]
+    fn films_are_told_by_their_extension() {
+        let film = |text: &str| match read(text) {
+            Ok(Output::Film(_, form)) => form,
+            other => panic!("{text}: {other:?}"),
+        };
+        for apng in ["a.apng", "a.png", "A.PNG", "-", "png:-"] {
+            assert_eq!(film(apng), Form::Own(Motion::Apng), "{apng}");
+        }
+        assert_eq!((film("a.webp"), film("webp:-")), (Form::Own(Motion::WebP), Form::Own(Motion::WebP)));
+        assert_eq!((film("a.mp4"), film("a.mkv")), (Form::Video("mp4"), Form::Video("matroska")));
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_name_is_taught() {
+        for (name, message, help) in [
+            ("out.exr", "the one picture `out.exr`", "-o out.{04}.exr"),
+            ("out.{04}.{04}.exr", "two places", "keep one"),
+            ("out.{04.png", "is not closed", "{04}"),
+            ("out.{x}.png", "`{x}` is no place", "{04}"),
+            ("out.{99}.png", "`{99}` is no place", "{04}"),
+            ("out.%04d.png", "`%04d` is no place", "{04}"),
+            ("out.####.png", "`####` is no place", "{04}"),
+            ("out.{04}.mp4", "one film", "leave the braces out"),
+            ("out.{04}.gif", "no format", "png"),
+            ("out.gif", "no format of films", "webp"),
+            ("out", "does not say", "webp"),
+            ("exr:-", "does not say", "webp"),
+        ] {
+            let said = read(name).unwrap_err();
+            assert!(said.contains(message) && said.contains(help), "{name}: {said}");
+        }
+        assert!(has_number(Path::new("a.{04}.png")) && !has_number(Path::new("a.png")));
+    }
+}

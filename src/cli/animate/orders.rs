@@ -1,0 +1,157 @@
+//! What the flags ask of a film. Everything that can be seen to be wrong before a file is read is found here.
+
+use super::super::args::{Build, Keeping, Resume};
+use super::super::build;
+use super::super::input::is_standard;
+use super::super::messages::on_standard_output;
+use super::super::target::Target;
+use super::super::{Problem, plain};
+use super::names::{Form, Output, Pattern, place};
+use super::only;
+use rt_lang::output::animation::{Motion, Rate};
+use rt_lang::output::{Depth, Format};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A scene, and what is made of it.
+pub struct Orders {
+    /// The scene; `-` is standard input.
+    pub scene: PathBuf,
+    /// How many frames the whole film has.
+    pub of: u32,
+    /// Those that are made, by their numbers.
+    pub numbers: Vec<u32>,
+    /// How fast it is played.
+    pub rate: Rate,
+    /// The films in one file.
+    pub films: Vec<(PathBuf, Form)>,
+    /// Pictures a frame.
+    each: Vec<Pattern>,
+    /// The folder in which frames are kept that no picture holds.
+    kept: Option<PathBuf>,
+}
+
+impl Orders {
+    /// Reads the flags of a build that has frames.
+    pub fn new(arguments: &Build) -> Result<Orders, Problem> {
+        let [scene] = arguments.scenes.as_slice() else {
+            let problem =
+                Problem::new(format!("a film is of one scene, and here are {}", arguments.scenes.len()));
+            return Err(problem.help("make them one by one"));
+        };
+        refuse_what_films_cannot(arguments)?;
+        let of = arguments.animating.frames.unwrap_or(1);
+        let numbers = only::frames(arguments.animating.only.as_ref(), of, &|name| std::env::var(name).ok())?;
+        let outputs = match arguments.outputs.as_slice() {
+            [] if is_standard(scene) => {
+                let problem = Problem::new("a scene from standard input has no name to put its film beside");
+                return Err(problem.help("say where it goes: `-o film.webp`"));
+            }
+            [] => vec![Output::beside(scene)],
+            outputs => outputs.iter().map(|path| Output::from_argument(path)).collect::<Result<_, _>>()?,
+        };
+        let (mut films, mut each) = (vec![], vec![]);
+        for output in outputs {
+            match output {
+                Output::Film(path, form) => films.push((path, form)),
+                Output::Each(pattern) => each.push(pattern),
+            }
+        }
+        let default = Rate::new(24, 1).ok_or_else(|| Problem::new("24 frames a second are none"))?;
+        let rate = arguments.animating.fps.unwrap_or(default);
+        let mut orders = Orders { scene: scene.clone(), of, numbers, rate, films, each, kept: None };
+        orders.refuse_misfits(arguments)?;
+        orders.kept = orders.kept_frames(arguments)?;
+        Ok(orders)
+    }
+
+    /// Every file that is written.
+    pub fn paths(&self) -> Vec<PathBuf> {
+        let films = self.films.iter().map(|(path, _)| place(path));
+        let frames = |pattern| self.numbers.iter().map(move |number| Pattern::path(pattern, *number));
+        films.chain(self.each.iter().flat_map(frames)).collect()
+    }
+
+    /// The pictures of a frame.
+    pub fn targets(&self, number: u32) -> Result<Vec<Target>, Problem> {
+        let mut targets: Vec<Target> =
+            self.each.iter().map(|pattern| pattern.target(number)).collect::<Result<_, _>>()?;
+        if let Some(folder) = &self.kept {
+            targets.push(Target { path: folder.join(format!("{number:06}.exr")), format: Format::Exr });
+        }
+        Ok(targets)
+    }
+
+    /// What a frame is called.
+    pub fn name(&self, number: u32) -> String {
+        let frame = format!("frame {number} of {}", self.of);
+        match self.each.iter().map(|pattern| pattern.path(number).display().to_string()).collect::<Vec<_>>() {
+            names if names.is_empty() => frame,
+            names => format!("{}, {frame}", names.join(", ")),
+        }
+    }
+
+    /// Makes the folder of frames that are kept, if there is one.
+    pub fn make_folder(&self) -> Result<(), Problem> {
+        let Some(folder) = &self.kept else { return Ok(()) };
+        fs::create_dir_all(folder).map_err(|error| {
+            Problem::new(format!("cannot make the folder `{}`: {}", folder.display(), plain(&error)))
+        })
+    }
+
+    fn refuse_misfits(&self, arguments: &Build) -> Result<(), Problem> {
+        let (first, paths) = (self.targets(1)?, self.paths());
+        let mut known = BTreeSet::new();
+        if let Some(twice) = paths.iter().find(|path| !known.insert(*path)) {
+            return Err(Problem::new(format!("the output `{}` is given twice", twice.display())));
+        }
+        build::refuse_inputs_as_outputs(&arguments.scenes, &paths)?;
+        build::refuse_idle_aovs(&arguments.aov, &first)?;
+        let png = |(_, form): &(PathBuf, Form)| *form == Form::Own(Motion::Apng);
+        let depth = if self.films.iter().any(png) { Depth::Eight } else { arguments.taking.look.bits };
+        build::refuse_idle_depth(depth, &first)?;
+        let standard = self.films.iter().any(|(path, _)| is_standard(&place(path)));
+        if on_standard_output(&arguments.messages) && standard {
+            let problem = Problem::new("the film and the messages would both go to standard output");
+            return Err(problem.help("write the film to a file, or use `--message-format short`"));
+        }
+        Ok(())
+    }
+
+    /// Where frames are kept, if they are, and no EXR holds them.
+    fn kept_frames(&self, arguments: &Build) -> Result<Option<PathBuf>, Problem> {
+        let held = self.targets(1)?.iter().any(|target| target.format == Format::Exr);
+        let Some((film, _)) = self.films.first().filter(|_| arguments.keeping.keeps() && !held) else {
+            return Ok(None);
+        };
+        if is_standard(&place(film)) {
+            let problem = Problem::new("a film on standard output has no name to keep its frames beside");
+            return Err(problem.help("write it to a file, or keep them: `-o frame.{04}.exr`"));
+        }
+        let mut name = film.clone().into_os_string();
+        name.push(".frames");
+        Ok(Some(name.into()))
+    }
+}
+
+fn refuse_what_films_cannot(arguments: &Build) -> Result<(), Problem> {
+    let named = |file: &Path| {
+        let problem = Problem::new(format!("`{}` cannot keep all frames of a film", file.display()));
+        problem.help("without its name each frame is kept beside its picture")
+    };
+    match arguments {
+        Build { keeping: Keeping { shard: Some(_), .. }, .. } => {
+            let problem = Problem::new("`--shard` and `--frames` do not go together");
+            Err(problem
+                .help("machines share a film by its frames: `--only 1-10`, or `--only auto` in a job array"))
+        }
+        Build { feedback: true, .. } => {
+            let problem = Problem::new("`--feedback` and `--frames` do not go together");
+            Err(problem.help("it is of one picture: choose a frame with `--set`"))
+        }
+        Build { keeping: Keeping { checkpoint: Some(Some(file)), .. }, .. } => Err(named(file)),
+        Build { keeping: Keeping { resume: Some(Resume::From(file)), .. }, .. } => Err(named(file)),
+        _ => Ok(()),
+    }
+}

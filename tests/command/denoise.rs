@@ -1,0 +1,140 @@
+//! Pictures without noise.
+
+use super::{Desk, Ended, assert_same, ended};
+use exr::prelude::*;
+use std::collections::BTreeMap;
+
+const POTS: &str = "
+sphere { radius: 1m, material: diffuse { color: #c05030 } }
+plane { at: (0, -1, 0)m, material: diffuse { color: checker(#ddd, #333, 40cm) } }
+light { at: (2, 4, 3)m, radius: 50cm, power: 200W }
+camera { from: (0, 1, 5)m, look: (0, 0, 0)m }
+";
+
+fn desk() -> Desk {
+    let desk = Desk::new();
+    desk.put("pots.rt", POTS);
+    desk
+}
+
+fn build(desk: &Desk, rest: &str) -> Ended {
+    desk.run(&format!("build pots.rt --size 48x36 {rest}"))
+}
+
+/// The channels of an EXR by name.
+fn channels(file: &[u8]) -> BTreeMap<String, Vec<f32>> {
+    let reader = read().no_deep_data().largest_resolution_level().all_channels();
+    let image =
+        reader.first_valid_layer().all_attributes().from_buffered(std::io::Cursor::new(file)).unwrap();
+    let channel = |channel: AnyChannel<FlatSamples>| {
+        let FlatSamples::F32(values) = channel.sample_data else { panic!("{} is no float", channel.name) };
+        (channel.name.to_string(), values)
+    };
+    image.layer_data.channel_data.list.into_iter().map(channel).collect()
+}
+
+/// How much the values of a channel differ from others, squared.
+fn apart(one: &[f32], other: &[f32]) -> f32 {
+    one.iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum()
+}
+
+#[test]
+fn an_exr_holds_the_picture_with_and_without_noise() {
+    let desk = desk();
+    build(&desk, "-q --samples 9 -o plain.exr -o plain.png").expect(0, &[]);
+    build(&desk, "--samples 9 --denoise -o both.exr -o clean.png -o clean.pfm -j 1")
+        .expect(0, &["48×36, 9 samples", ", denoised in "]);
+    build(&desk, "-q --samples 9 --denoise -o again.exr -j 3").expect(0, &[]);
+    assert_same(&desk.path("both.exr"), &desk.path("again.exr"));
+
+    let (plain, both) = (channels(&desk.get("plain.exr")), channels(&desk.get("both.exr")));
+    let names: Vec<&str> = both.keys().map(String::as_str).collect();
+    assert_eq!(names, ["B", "G", "R", "denoised.B", "denoised.G", "denoised.R"]);
+    assert!(plain.iter().all(|(name, values)| both[name] == *values), "the traced picture is the same");
+    build(&desk, "-q --samples 1024 -o truth.exr").expect(0, &[]);
+    let truth = channels(&desk.get("truth.exr"));
+    for name in ["R", "G", "B"] {
+        let (before, after) =
+            (apart(&both[name], &truth[name]), apart(&both[&format!("denoised.{name}")], &truth[name]));
+        assert!(after < 0.5 * before, "{name}: {before} became {after}");
+    }
+
+    // Developed later it is either of them.
+    desk.run("develop -q both.exr -o later.png").expect(0, &[]);
+    desk.run("develop -q both.exr --noisy -o noisy.png").expect(0, &[]);
+    desk.run("develop -q both.exr -o later.pfm").expect(0, &[]);
+    assert_same(&desk.path("clean.png"), &desk.path("later.png"));
+    assert_same(&desk.path("clean.pfm"), &desk.path("later.pfm"));
+    assert_same(&desk.path("plain.png"), &desk.path("noisy.png"));
+    assert!(desk.get("plain.png") != desk.get("clean.png"));
+    desk.run("develop -q plain.exr --noisy -o noisy.png").expect(0, &[]);
+    assert_same(&desk.path("plain.png"), &desk.path("noisy.png"));
+}
+
+#[test]
+fn what_is_transparent_stays_so() {
+    let desk = desk();
+    desk.put(
+        "alone.rt",
+        "sphere { radius: 1m }\nsky { radiance: 3W/m2 }\nrender { background: transparent, size: (40, 30) }\n",
+    );
+    desk.run("build -q alone.rt --samples 8 --denoise -o both.exr -o clean.png").expect(0, &[]);
+    let both = channels(&desk.get("both.exr"));
+    let nothing: Vec<usize> = (0..40 * 30).filter(|index| both["A"][*index] == 0.0).collect();
+    assert!(nothing.len() > 300);
+    assert!(nothing.iter().all(|index| both["denoised.R"][*index] == 0.0));
+    desk.run("develop -q both.exr -o later.png").expect(0, &[]);
+    assert_same(&desk.path("clean.png"), &desk.path("later.png"));
+}
+
+#[test]
+fn a_window_and_a_noise_target_are_denoised_too() {
+    let desk = desk();
+    build(&desk, "--samples 8 --denoise --crop 5,6,20,10 -o part.exr -o part.png")
+        .expect(0, &["20×10, 8 samples", ", denoised in "]);
+    assert_eq!(channels(&desk.get("part.exr"))["denoised.G"].len(), 200);
+    build(&desk, "--noise 2% --denoise -o target.exr -o target.png").expect(0, &[", denoised in "]);
+    build(&desk, "-q --noise 2% -o plain.exr").expect(0, &[]);
+    let (plain, both) = (channels(&desk.get("plain.exr")), channels(&desk.get("target.exr")));
+    assert!(plain.iter().all(|(name, values)| both[name] == *values), "the traced picture is the same");
+    build(&desk, "--time 1ms --denoise -o short.png").expect(0, &["short.png: 48×36"]);
+}
+
+#[test]
+fn it_says_what_it_does_not_go_with() {
+    let desk = desk();
+    let refused = |rest: &str, said: &[&str]| build(&desk, rest).expect(2, said);
+    refused("--denoise --shard 1/2 -o a.exr", &["`--denoise` and `--shard` do not go together", "shares"]);
+    refused("--denoise --checkpoint -o a.png", &["`--denoise` and `--checkpoint` do not go together"]);
+    refused("--denoise --resume -o a.png", &["`--denoise` and `--checkpoint` do not go together"]);
+    refused("--denoise --samples 1 -o a.png", &["`--denoise` needs 2 samples a pixel"]);
+    assert!(!desk.names().iter().any(|name| name.starts_with("a.")));
+}
+
+#[test]
+fn frames_of_a_film_are_denoised() {
+    let desk = desk();
+    desk.put(
+        "pots.rt",
+        POTS.replace("from: (0, 1, 5)m", "from: (t, 1, 5)m, exposure: 0") + "param t: length = 0\n",
+    );
+    let film = |rest: &str| {
+        let mut command = desk.command("build pots.rt --size 48x36 --samples 5 --frames 2 --resume");
+        command.args(["--sweep", "t = 0 to 1m"]).args(rest.split_whitespace());
+        ended(command.output().unwrap())
+    };
+    film("--denoise -o f{}.exr -o f{}.png -o film.webp").expect(0, &["f2.exr, f2.png, frame 2 of 2"]);
+    build(&desk, "-q --samples 5 --set t=1m --denoise -o one.exr -o one.png").expect(0, &[]);
+    assert_same(&desk.path("one.exr"), &desk.path("f2.exr"));
+    assert_same(&desk.path("one.png"), &desk.path("f2.png"));
+    assert!(channels(&desk.get("f1.exr")).contains_key("denoised.G"));
+
+    // Those that are done are taken, without noise too, and never for those with noise.
+    film("--denoise -o f{}.exr -o f{}.png -o again.webp")
+        .expect(0, &["frame 1 of 2 is done", "frame 2 of 2 is done"]);
+    assert_same(&desk.path("film.webp"), &desk.path("again.webp"));
+    film("-o f{}.exr -o f{}.png -o noisy.webp")
+        .expect(0, &["made anew: it differs in its denoising (yes, not no)"]);
+    assert!(!channels(&desk.get("f1.exr")).contains_key("denoised.G"));
+    assert!(desk.get("film.webp") != desk.get("noisy.webp"));
+}
