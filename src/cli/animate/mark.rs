@@ -110,7 +110,8 @@ pub fn record(subject: &Subject, targets: &[Target], interrupt: &Interrupt) -> R
 
 fn file_entry(target: &Target) -> String {
     let name = target.path.file_name().unwrap_or_default().to_string_lossy();
-    format!("file {}", name.escape_debug())
+    // A colon ends the name of an entry.
+    format!("file {}", name.escape_debug().to_string().replace(':', "\\u{3a}"))
 }
 
 /// Of a file's bytes; none where it cannot be read.
