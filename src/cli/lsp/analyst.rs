@@ -132,7 +132,8 @@ impl Analyst {
             return Some(meaning.clone());
         }
         let meaning = Arc::new(Meaning::find(view, key, stop)?);
-        self.known.insert(key.clone(), (document.stamp, meaning.clone()));
+        // It takes a while to take apart, which nobody should wait for.
+        let _before = self.known.insert(key.clone(), (document.stamp, meaning.clone()));
         told(&meaning);
         Some(meaning)
     }
