@@ -55,6 +55,13 @@ impl Aov {
     }
 }
 
+/// The hash of the names that some of them show; none where they show none. The samples of a picture do not depend on names,
+/// so its identity has none of them.
+pub fn names(wanted: &[Aov], from: Provenance) -> Option<blake3::Hash> {
+    let named = wanted.iter().any(|aov| matches!(aov, Aov::Object | Aov::Material));
+    named.then(|| Names::new(from).digest())
+}
+
 /// The channels of some of them, in the window of a film. First hits are wanted for those that are of them, and of the same
 /// window.
 pub fn channels(wanted: &[Aov], film: &Film, first: Option<&FirstHits>, from: Provenance) -> Channels {

@@ -56,6 +56,28 @@ impl<'a> Names<'a> {
         seen.into_iter().map(|id| (id, names[&self.origin(id)].clone())).collect()
     }
 
+    /// The hash of all that names are made of, whatever is seen: as long as it is the same, the same picture has the same names.
+    pub(super) fn digest(&self) -> blake3::Hash {
+        let mut hasher = blake3::Hasher::new();
+        let mut add = |named: &Named| {
+            for text in [&named.bare, &named.name(2)] {
+                hasher.update(&(text.len() as u64).to_le_bytes());
+                hasher.update(text.as_bytes());
+            }
+        };
+        let mut last = None;
+        for (id, primitive) in (0..).map(PrimitiveId).zip(self.from.scene.primitives.iter()) {
+            // Those of one statement mostly follow one another.
+            if last.replace(primitive.origin) != Some(primitive.origin) {
+                add(&Named::of_thing(&self.from.thing_of(id)));
+            }
+        }
+        for id in self.of_each_material() {
+            add(&Named::of_material(self.from.material(id)));
+        }
+        hasher.finalize()
+    }
+
     /// A primitive at least of each material in the scene.
     fn of_each_material(&self) -> impl Iterator<Item = PrimitiveId> {
         let marks = &self.from.marks.materials;

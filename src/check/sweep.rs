@@ -67,6 +67,10 @@ pub(super) fn sweeps(
             continue;
         };
         let (value, last) = match until(&value) {
+            Some(at) if until(&value[at + UNTIL.len()..]).is_some() => {
+                diagnostics.push(errors::sweep_of_more(whole));
+                continue;
+            }
             Some(at) => (format!("{}to   {}", &value[..at], &value[at + UNTIL.len()..]), Last::Before),
             None => (value, Last::End),
         };
@@ -79,6 +83,11 @@ pub(super) fn sweeps(
             diagnostics.push(errors::malformed_sweep(read.span));
             continue;
         };
+        let ranges = |end: &ast::Expr| matches!(end.kind, Tree::Binary { operator: BinaryOp::To, .. });
+        if ranges(&left) || ranges(&right) {
+            diagnostics.push(errors::sweep_of_more(read.span));
+            continue;
+        }
         let word = match last {
             Last::End => at,
             Last::Before => Span::new(source, at.range().start, at.range().start + UNTIL.len()),

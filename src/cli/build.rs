@@ -229,7 +229,7 @@ fn first_repeated(paths: &[PathBuf]) -> Option<&PathBuf> {
 }
 
 /// A path to compare by: links and dots resolved, as far as the file or its folder exists.
-fn same(path: &Path) -> PathBuf {
+pub fn same(path: &Path) -> PathBuf {
     let in_folder = || {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         Some(fs::canonicalize(folder).ok()?.join(path.file_name()?))

@@ -4,7 +4,7 @@ use super::{Problem, plain};
 use rt_lang::diagnostic::{Code, Diagnostic};
 use rt_lang::source::{Source, Sources};
 use rt_lang::span::{SourceId, Span};
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Read, stdin};
 use std::path::Path;
 
@@ -47,15 +47,36 @@ pub fn read(path: &Path, most: usize) -> Result<Input, Problem> {
     Ok(take(name, bytes, most))
 }
 
-/// Reads the bytes of a picture.
+/// Reads the bytes of a picture that a user names: a file, a pipe or standard input.
 pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, Problem> {
-    let bytes = if is_standard(path) {
-        limited(stdin().lock(), most)
-    } else {
-        File::open(path).and_then(|file| limited(file, most))
+    match is_standard(path) {
+        true => all(path, Ok(stdin().lock()), most),
+        false => all(path, File::open(path), most),
+    }
+}
+
+/// Reads the bytes of a file that `rtc` has written.
+pub fn read_plain(path: &Path, most: u64) -> Result<Vec<u8>, Problem> {
+    all(path, open_plain(path), most)
+}
+
+/// Opens a plain file; a pipe would be waited for, maybe for ever.
+pub fn open_plain(path: &Path) -> io::Result<File> {
+    match fs::metadata(path)?.is_file() {
+        true => File::open(path),
+        false => Err(io::ErrorKind::InvalidInput.into()),
+    }
+}
+
+fn all(path: &Path, from: io::Result<impl Read>, most: u64) -> Result<Vec<u8>, Problem> {
+    let problem = |error: io::Error| {
+        let reason = match error.kind() {
+            io::ErrorKind::InvalidInput => "it is not a file".to_string(),
+            _ => plain(&error),
+        };
+        Problem::new(format!("cannot read `{}`: {reason}", path.display()))
     };
-    let problem = |error| Problem::new(format!("cannot read `{}`: {}", path.display(), plain(&error)));
-    let bytes = bytes.map_err(problem)?;
+    let bytes = from.and_then(|from| limited(from, most)).map_err(problem)?;
     if bytes.len() as u64 > most {
         return Err(Problem::new(format!("`{}` is larger than {} MiB", path.display(), most >> 20)));
     }

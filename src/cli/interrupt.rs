@@ -8,14 +8,17 @@ use std::io;
 use std::path::PathBuf;
 use std::process::{Child, ExitStatus};
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::time::{Duration, Instant};
 
 /// How long the work may take to stop by itself before the process is ended.
 const GRACE: Duration = Duration::from_millis(40);
 
 /// How often it is looked whether a program has ended.
 const PERIOD: Duration = Duration::from_millis(10);
+
+/// How long it is waited for files that are being made or moved: a disk that does not answer must not keep the process.
+const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Whether the process is asked to end, and what to tidy up then.
 #[derive(Clone, Debug, Default)]
@@ -43,9 +46,13 @@ impl Interrupt {
         interrupt
     }
 
-    /// Stops this render, and no earlier one, when the process is asked to end.
+    /// Stops this render, and no earlier one, when the process is asked to end, or was already.
     pub fn watch(&self, control: Arc<Control>) {
-        *lock(&self.control) = Some(control);
+        *lock(&self.control) = Some(control.clone());
+        // Who asks sets this first, and then looks for a render: one of the two finds the other.
+        if self.asked.load(SeqCst) {
+            control.cancel();
+        }
     }
 
     /// Takes SIGUSR1 for the request to keep what there is: it would end the process.
@@ -156,9 +163,11 @@ impl Interrupt {
 
     fn leave(&self, terminal: Terminal) -> ! {
         // Held until the process is gone, so that nobody makes or moves a file from here on.
-        let unfinished = lock(&self.unfinished);
+        let unfinished = held_soon(&self.unfinished);
         std::mem::take(&mut *lock(&self.children)).into_values().for_each(kill);
-        remove(&unfinished);
+        if let Some(unfinished) = &unfinished {
+            remove(unfinished);
+        }
         if terminal.interactive {
             // Past the progress bar.
             terminal.line("");
@@ -175,6 +184,19 @@ fn remove(paths: &BTreeSet<PathBuf>) {
     }
 }
 
+/// What a mutex guards; none where it is not free in time.
+fn held_soon<T>(mutex: &Mutex<T>) -> Option<MutexGuard<'_, T>> {
+    let deadline = Instant::now() + PATIENCE;
+    loop {
+        match mutex.try_lock() {
+            Ok(held) => return Some(held),
+            Err(TryLockError::Poisoned(poisoned)) => return Some(poisoned.into_inner()),
+            Err(TryLockError::WouldBlock) if Instant::now() >= deadline => return None,
+            Err(TryLockError::WouldBlock) => std::thread::sleep(PERIOD),
+        }
+    }
+}
+
 /// Ends a program. One that has ended is none the worse for it.
 fn kill(mut child: Child) {
     let _ = child.kill().and_then(|()| child.wait());
@@ -183,4 +205,30 @@ fn kill(mut child: Child) {
 /// What the locks guard is whole at any time, also after a panic.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_render_that_begins_when_the_end_was_asked_for_stops() {
+        let interrupt = Interrupt::default();
+        let before = Arc::new(Control::new());
+        interrupt.watch(before.clone());
+        assert!(!before.is_cancelled());
+        interrupt.asked.store(true, SeqCst);
+        let next = Arc::new(Control::new());
+        interrupt.watch(next.clone());
+        assert!(next.is_cancelled());
+    }
+
+    #[test]
+    fn what_does_not_answer_is_not_waited_for() {
+        let mutex = Mutex::new(1);
+        let held = lock(&mutex);
+        assert!(std::thread::scope(|scope| scope.spawn(|| held_soon(&mutex).is_none()).join().unwrap()));
+        drop(held);
+        assert_eq!(held_soon(&mutex).as_deref(), Some(&1));
+    }
 }

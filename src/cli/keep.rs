@@ -76,6 +76,8 @@ pub struct Keeper<'a> {
     facts: &'a Facts,
     interrupt: &'a Interrupt,
     terminal: Terminal,
+    /// Keeps others from the file meanwhile, who would replace what is kept by less.
+    held: Option<Aside>,
     /// When they were kept last, and how many samples a pixel those were.
     last: (Instant, f64),
     /// Whether it was said that they cannot be kept.
@@ -92,21 +94,26 @@ impl<'a> Keeper<'a> {
         terminal: Terminal,
     ) -> Keeper<'a> {
         let last = (Instant::now(), 0.0);
-        Keeper { places, every, subject, facts, interrupt, terminal, last, complained: false }
+        Keeper { places, every, subject, facts, interrupt, terminal, held: None, last, complained: false }
     }
 
     /// The picture to go on with; none where there is nothing to go on from. What differs is an error, and so is a file that
     /// is damaged, for nobody should lose work by going on without it; and a place where nothing can be kept.
     pub fn resume(&mut self) -> Result<Option<Making>, Problem> {
+        self.held = Some(Aside::hold(&self.places.to, self.interrupt)?);
         drop(Aside::always_beside(&self.places.to, self.interrupt)?);
         let Some((path, must_be)) = &self.places.from else { return Ok(None) };
         if !must_be && !path.exists() {
             return Ok(None);
         }
-        let bytes = input::read_bytes(path, LARGEST)?;
+        let bytes = input::read_plain(path, LARGEST)?;
         let cannot = |why: String| {
             let problem = Problem::new(format!("cannot go on from `{}`: {why}", path.display()));
-            problem.help("`--resume=never` begins afresh, `--checkpoint=FILE` keeps the samples elsewhere")
+            match self.places.yields {
+                true => problem.help("remove that file, and the frame is made from its beginning"),
+                false => problem
+                    .help("`--resume=never` begins afresh, `--checkpoint=FILE` keeps the samples elsewhere"),
+            }
         };
         let saved = Saved::decode(&bytes).map_err(|why| cannot(format!("it {why}")))?;
         if let Some(why) = self.subject.refuses(&saved.subject) {

@@ -23,6 +23,7 @@ mod animate;
 mod args;
 mod build;
 mod check;
+mod claim;
 mod denoise;
 mod develop;
 mod expand;

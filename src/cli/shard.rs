@@ -29,8 +29,8 @@ pub fn share(
 /// The share that is the task of a Slurm job array. Part of an array has not as many tasks as there are shares, so it must be
 /// a whole one, from 1 on.
 fn array(variable: &dyn Fn(&str) -> Option<String>) -> Result<(u32, u32), Problem> {
-    let number = |name: &str| variable(name).and_then(|value| value.trim().parse::<u32>().ok());
-    let numbers = ["ID", "COUNT", "MIN", "MAX"].map(|name| number(&format!("SLURM_ARRAY_TASK_{name}")));
+    let task = |name: &str| number(variable, &format!("SLURM_ARRAY_TASK_{name}"));
+    let numbers = [task("ID")?, task("COUNT")?, task("MIN")?, task("MAX")?];
     let help =
         "say how many shares there are: `--shard auto/N` takes only the first number from the scheduler";
     match numbers {
@@ -40,6 +40,10 @@ fn array(variable: &dyn Fn(&str) -> Option<String>) -> Result<(u32, u32), Proble
             Err(Problem::new(format!("{which}: `--shard auto` cannot tell how many shares there are"))
                 .help(help))
         }
+        _ if number(variable, KUBERNETES)?.is_some() => Err(Problem::new(
+            "Kubernetes does not say how many shares there are, so `--shard auto` cannot tell",
+        )
+        .help("say it, as in the job's `completions`: `--shard auto/N`")),
         _ => {
             Err(Problem::new("`--shard auto` is for a task of a Slurm job array, and this is none")
                 .help(help))
@@ -49,7 +53,7 @@ fn array(variable: &dyn Fn(&str) -> Option<String>) -> Result<(u32, u32), Proble
 
 /// The number of the share by the index of the task.
 fn index(variable: &dyn Fn(&str) -> Option<String>) -> Result<u32, Problem> {
-    task(variable).ok_or_else(|| {
+    task(variable)?.ok_or_else(|| {
         let problem = Problem::new("no scheduler says which share this is");
         problem.help(
             "`--shard auto/N` asks SLURM_ARRAY_TASK_ID, then JOB_COMPLETION_INDEX; else give `--shard I/N`",
@@ -57,11 +61,31 @@ fn index(variable: &dyn Fn(&str) -> Option<String>) -> Result<u32, Problem> {
     })
 }
 
+/// Where Slurm says which task this is.
+const SLURM: &str = "SLURM_ARRAY_TASK_ID";
+/// Where Kubernetes does.
+const KUBERNETES: &str = "JOB_COMPLETION_INDEX";
+
 /// The number of the task, as a scheduler says it: that of Slurm as it is, that of Kubernetes, which counts from 0, plus 1.
-pub fn task(variable: &dyn Fn(&str) -> Option<String>) -> Option<u32> {
-    let number = |name: &str| variable(name).and_then(|value| value.trim().parse::<u32>().ok());
-    let kubernetes = || number("JOB_COMPLETION_INDEX").and_then(|index| index.checked_add(1));
-    number("SLURM_ARRAY_TASK_ID").or_else(kubernetes)
+pub fn task(variable: &dyn Fn(&str) -> Option<String>) -> Result<Option<u32>, Problem> {
+    if let Some(id) = number(variable, SLURM)? {
+        return Ok(Some(id));
+    }
+    let Some(index) = number(variable, KUBERNETES)? else { return Ok(None) };
+    index.checked_add(1).map(Some).ok_or_else(|| no_number(KUBERNETES, &index.to_string()))
+}
+
+/// The number that a variable holds; none where it is not set. What is no number comes from something that went wrong, and
+/// must not be taken for another share.
+fn number(variable: &dyn Fn(&str) -> Option<String>, name: &str) -> Result<Option<u32>, Problem> {
+    let Some(value) = variable(name) else { return Ok(None) };
+    value.trim().parse().map(Some).map_err(|_| no_number(name, &value))
+}
+
+fn no_number(name: &str, value: &str) -> Problem {
+    let value: String = value.escape_debug().take(40).collect();
+    Problem::new(format!("{name} is `{value}`, which is not the number of a task"))
+        .help("the scheduler sets it; without one, take it out of the environment")
 }
 
 #[cfg(test)]
@@ -95,9 +119,28 @@ mod tests {
         assert_eq!(ask(Shard::AutoOf(4), &[("JOB_COMPLETION_INDEX", "0")]), Ok((1, 4)));
         assert!(ask(Shard::AutoOf(4), &[("JOB_COMPLETION_INDEX", "4")]).is_err());
         assert!(ask(Shard::Auto, &slurm("0", "4", "0", "3")).is_err());
-        assert!(
-            ask(Shard::Auto, &[]).is_err() && ask(Shard::AutoOf(4), &[("SLURM_ARRAY_TASK_ID", "x")]).is_err()
-        );
+        assert!(ask(Shard::Auto, &[]).is_err_and(|why| why.contains("this is none")));
         assert!(ask(Shard::Given(1, 65), &[]).is_err_and(|why| why.contains("cannot be divided")));
+    }
+
+    #[test]
+    fn what_is_no_number_is_named_and_not_passed_over() {
+        let index = ("JOB_COMPLETION_INDEX", "1");
+        for wrong in ["x", "-1", "", "4294967296", "1.5"] {
+            let id = ("SLURM_ARRAY_TASK_ID", wrong);
+            for shard in [Shard::Auto, Shard::AutoOf(2)] {
+                let said = ask(shard, &[id, index]).unwrap_err();
+                assert!(
+                    said.contains("SLURM_ARRAY_TASK_ID") && said.contains(&format!("`{wrong}`")),
+                    "{said}"
+                );
+            }
+        }
+        let mut count = slurm("1", "4", "1", "4");
+        count[1].1 = "four";
+        assert!(ask(Shard::Auto, &count).is_err_and(|why| why.contains("SLURM_ARRAY_TASK_COUNT")));
+        let last = [("JOB_COMPLETION_INDEX", "4294967295")];
+        assert!(ask(Shard::AutoOf(4), &last).is_err_and(|why| why.contains("4294967295")));
+        assert!(ask(Shard::Auto, &[index]).is_err_and(|why| why.contains("Kubernetes")));
     }
 }

@@ -3,10 +3,10 @@
 
 use super::input::is_standard;
 use super::interrupt::Interrupt;
-use super::{Problem, plain};
+use super::{Problem, claim, plain};
 use rt_lang::output::Format;
-use std::fs::{self, Permissions};
-use std::io::{self, IsTerminal, Write, stdout};
+use std::fs;
+use std::io::{self, ErrorKind, IsTerminal, Write, stdout};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
@@ -97,29 +97,25 @@ impl Aside {
     /// The same for a place that one process writes again and again: the file has always the same name, so that what is left
     /// of one that was killed is not left for ever. While another process writes there it is an error.
     pub fn always_beside(path: &Path, interrupt: &Interrupt) -> Result<Aside, Problem> {
-        let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
-        Aside::make(path, name.as_deref(), interrupt)
+        Aside::make(path, Some(""), interrupt)
     }
 
-    fn make(path: &Path, name: Option<&str>, interrupt: &Interrupt) -> Result<Aside, Problem> {
-        let cannot = |reason: String| Problem::new(format!("cannot write `{}`: {reason}", path.display()));
-        let existing = fs::metadata(path).ok();
+    /// Keeps a place for this process as long as this lives, also between one writing and the next. Nothing is written to it.
+    pub fn hold(path: &Path, interrupt: &Interrupt) -> Result<Aside, Problem> {
+        Aside::make(path, Some(".lock"), interrupt)
+    }
+
+    /// What is always of one name has something behind it.
+    fn make(path: &Path, always: Option<&str>, interrupt: &Interrupt) -> Result<Aside, Problem> {
+        let permissions = fs::metadata(path).ok().map(|existing| existing.permissions());
         let place = place(path)?;
         let folder = folder(&place);
-        let made = interrupt.create(|| {
-            let mut builder = temporary(existing.map(|existing| existing.permissions()));
-            let prefix = name.map(|name| format!(".{name}"));
-            if let Some(prefix) = &prefix {
-                remove_left(&folder.join(format!("{prefix}{SUFFIX}")))?;
-                builder.prefix(prefix).rand_bytes(0);
-            }
-            let file = builder.tempfile_in(folder)?;
-            // It tells others that it is not left behind; where nothing can be locked, they do not come.
-            let _ = file.as_file().try_lock();
-            let path = file.path().to_path_buf();
-            Ok((file, path))
-        });
-        let file = made.map_err(|error| cannot(plain(&error)))?;
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let made = match always {
+            Some(suffix) => claim::always(folder, &format!("{name}{suffix}"), permissions, interrupt),
+            None => claim::any(folder, permissions, interrupt),
+        };
+        let file = made.map_err(|error| cannot_write(&shown(path), &error))?;
         Ok(Aside { path: path.into(), file: Some((file, place)), interrupt: interrupt.clone() })
     }
 
@@ -127,7 +123,7 @@ impl Aside {
     pub fn write(&mut self, bytes: &[u8]) -> Result<(), Problem> {
         let Some((file, _)) = &mut self.file else { return Ok(()) };
         let written = file.as_file_mut().write_all(bytes);
-        written.map_err(|error| cannot_write(&format!("`{}`", self.path.display()), &error))?;
+        written.map_err(|error| cannot_write(&shown(&self.path), &error))?;
         self.sync()
     }
 
@@ -139,7 +135,8 @@ impl Aside {
     /// The name of the file, for another program that writes it; then comes [`Aside::sync`].
     pub fn lend(&self) -> PathBuf {
         self.file.as_ref().map_or_else(PathBuf::new, |(file, _)| {
-            // Some systems let nobody else write what is locked.
+            // There nobody else writes what is locked, and nobody takes away what is open.
+            #[cfg(windows)]
             let _ = file.as_file().unlock();
             file.path().to_path_buf()
         })
@@ -149,15 +146,21 @@ impl Aside {
     pub fn sync(&mut self) -> Result<(), Problem> {
         let Some((file, _)) = &self.file else { return Ok(()) };
         let synced = file.as_file().sync_all();
-        synced.map_err(|error| cannot_write(&format!("`{}`", self.path.display()), &error))
+        synced.map_err(|error| cannot_write(&shown(&self.path), &error))
     }
 
     /// Moves the file to its place.
     pub fn finish(mut self) -> Result<(), Problem> {
         let Some((file, place)) = self.file.take() else { return Ok(()) };
         let path = file.path().to_path_buf();
-        let moved = self.interrupt.settle(&path, || file.persist(&place).map(drop).map_err(|e| e.error));
-        moved.map_err(|error| cannot_write(&format!("`{}`", self.path.display()), &error))?;
+        let moved = self.interrupt.settle(&path, || {
+            if !claim::is_own(&file) {
+                claim::discard(file);
+                return Err(ErrorKind::ResourceBusy.into());
+            }
+            file.persist(&place).map(drop).map_err(|error| error.error)
+        });
+        moved.map_err(|error| cannot_write(&shown(&self.path), &error))?;
         sync_folder(&place);
         Ok(())
     }
@@ -167,7 +170,7 @@ impl Drop for Aside {
     fn drop(&mut self) {
         if let Some((file, _)) = self.file.take() {
             let path = file.path().to_path_buf();
-            self.interrupt.settle(&path, || drop(file));
+            self.interrupt.settle(&path, || claim::discard(file));
         }
     }
 }
@@ -198,8 +201,23 @@ fn folder(place: &Path) -> &Path {
     place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
+/// A file as messages call it.
+fn shown(path: &Path) -> String {
+    format!("`{}`", path.display())
+}
+
 fn cannot_write(name: &str, error: &io::Error) -> Problem {
-    Problem::new(format!("cannot write {name}: {}", plain(error)))
+    match error.kind() {
+        ErrorKind::ResourceBusy => {
+            Problem::new(format!("cannot write {name}: another process is writing it"))
+                .help("wait until that is done, or write another file")
+        }
+        ErrorKind::InvalidInput => {
+            Problem::new(format!("cannot write {name}: what is beside it for that is not a file"))
+                .help("remove what has its name with a dot before it and `.tmp` behind")
+        }
+        _ => Problem::new(format!("cannot write {name}: {}", plain(error))),
+    }
 }
 
 /// Replaces a text that stands at this path, or leaves it as it is.
@@ -210,41 +228,11 @@ pub fn replace(path: &Path, bytes: &[u8], interrupt: &Interrupt) -> Result<(), P
     staged.finish()
 }
 
-/// Removes what a process has left that was killed, and not what one is writing.
-fn remove_left(path: &Path) -> io::Result<()> {
-    match fs::File::open(path) {
-        Ok(left) if matches!(left.try_lock(), Err(fs::TryLockError::WouldBlock)) => {
-            Err(io::ErrorKind::ResourceBusy.into())
-        }
-        Ok(_) => fs::remove_file(path),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
-        Err(error) => Err(error),
-    }
-}
-
 /// Waits until it is on the disk which files a folder holds, where that can be asked for: the file is whole either way.
 fn sync_folder(place: &Path) {
-    let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if cfg!(unix) {
-        let _ = fs::File::open(folder).and_then(|folder| folder.sync_all());
+        let _ = fs::File::open(folder(place)).and_then(|folder| folder.sync_all());
     }
-}
-
-/// How the names of files end that are being written.
-const SUFFIX: &str = ".tmp";
-
-/// The permissions of a file that is replaced, else those that the umask leaves.
-fn temporary<'a>(existing: Option<Permissions>) -> tempfile::Builder<'a, 'static> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".rtc-").suffix(SUFFIX);
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(existing.unwrap_or(Permissions::from_mode(0o666)));
-    }
-    #[cfg(not(unix))]
-    let _ = existing;
-    builder
 }
 
 fn unknown_format(name: &str) -> Problem {

@@ -105,6 +105,11 @@ impl<'a> Plan<'a> {
         Plan { places: self.places.filter(|_| !self.denoises).map(Places::yielding), ..self }
     }
 
+    /// The scene and where it came from.
+    pub fn from(&self) -> Provenance<'a> {
+        self.from
+    }
+
     /// What is traced of the picture.
     pub fn window(&self) -> Window {
         self.window

@@ -197,6 +197,8 @@ fn what_cannot_be_is_refused_before_any_work() {
     };
     wrong("t = 1", &["E0503", "[--sweep:1:", "`to` or `until`", "frame 1 of 5 cannot be made"]);
     wrong("t = 0 to 8deg", &["E0203", "8deg"]);
+    wrong("t = 0 to 1 to 2", &["E0503", "this has more", "choose the values"]);
+    wrong("t = 0 until 1 until 2", &["E0503", "this has more"]);
     wrong("s = 0 to 1", &["E0503", "no param `s`"]);
     desk.put("rise.rt", RISING.replace("= 0\n", "= 0 in 0 to 1\n"));
     // Found before the frames on the way to it are made.
@@ -245,6 +247,54 @@ fn done_frames_are_skipped_and_those_that_changed_made_anew() {
     film(pictures).expect(0, &["made anew: it differs in its surfaces"]);
     let never = film("-o f{}.png -o f{}.exr --resume=never --only 1");
     never.expect(0, &["frame 1 of 3: 3 samples"]);
+}
+
+#[test]
+fn frames_with_names_in_them_are_made_anew_when_these_change() {
+    let desk = desk();
+    let named = |name: &str| {
+        desk.put("rise.rt", format!("material {name} = diffuse {{ color: red }}\nsphere {name}s {{ radius: 1m, material: {name} }}\n{RISING}"))
+    };
+    let film = |rest: &str| build(&desk, &format!(r#"--sweep "t = 0 to 1" --frames 1 --resume {rest}"#));
+    named("rouge");
+    film("-o n{}.exr --aov object,material").expect(0, &["3 samples"]);
+    film("-o plain{}.exr").expect(0, &["3 samples"]);
+    film("-o n{}.exr --aov object,material").expect(0, &["is done"]);
+    named("ruddy");
+    film("-o n{}.exr --aov object,material").expect(0, &["made anew: it differs in its names"]);
+    film("-o plain{}.exr").expect(0, &["is done"]);
+}
+
+#[test]
+fn a_damaged_checkpoint_of_a_frame_is_told_with_its_mend() {
+    let desk = desk();
+    desk.put("f1.png.checkpoint", "junk");
+    let film = || build(&desk, r#"--sweep "t = 0 to 1" --frames 1 -o f{}.png --resume"#);
+    film().expect(2, &["cannot go on from `f1.png.checkpoint`", "remove that file"]);
+    fs::remove_file(desk.path("f1.png.checkpoint")).unwrap();
+    film().expect(0, &["frame 1 of 1: 3 samples"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_in_place_of_a_frame_is_not_waited_for() {
+    let desk = desk();
+    let film = || build(&desk, r#"--sweep "t = 0 to 1" --frames 1 -o f{}.exr --resume"#);
+    film().expect(0, &["3 samples"]);
+    fs::remove_file(desk.path("f1.exr")).unwrap();
+    assert!(std::process::Command::new("mkfifo").arg(desk.path("f1.exr")).status().unwrap().success());
+    film().expect(2, &["there is something that is not a file"]);
+}
+
+#[test]
+fn a_film_of_very_many_frames_begins_at_once() {
+    let desk = desk();
+    let start = std::time::Instant::now();
+    let film = |rest: &str| build(&desk, &format!(r#"--sweep "t = 0 to 2deg" --frames 1000000 {rest}"#));
+    film("-o f{06}.exr").expect(1, &["E0203"]);
+    film("-o f{}.png -o f{03}.png").expect(2, &["`f100.png` is given twice"]);
+    film("-o rise.{04}.png -o rise.rt").expect(2, &["rise.rt"]);
+    assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
 }
 
 /// A program that is called ffmpeg, in a folder that is the path.

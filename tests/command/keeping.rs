@@ -132,6 +132,36 @@ fn what_was_kept_goes_on_to_the_same_bytes() {
     build(&desk, "-o a.exr --checkpoint=no/folder").expect(2, &["there is no folder `no`"]);
 }
 
+#[test]
+fn a_checkpoint_is_of_one_process_at_a_time() {
+    let desk = desk();
+    let mut first = desk.command("build room.rt --size 200x150 --samples 1000000 -o a.png --checkpoint=kept");
+    let mut first = first.stderr(Stdio::null()).spawn().unwrap();
+    while !desk.names().contains(&".kept.lock.tmp".to_string()) {
+        assert!(first.try_wait().unwrap().is_none(), "it ended by itself");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    build(&desk, "--samples 1 -o b.exr --checkpoint=kept")
+        .expect(2, &["cannot write `kept`: another process"]);
+    first.kill().unwrap();
+    first.wait().unwrap();
+    build(&desk, "--samples 1 -o b.exr --checkpoint=kept").expect(0, &[]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_beside_a_picture_is_not_waited_for() {
+    let desk = desk();
+    for name in [".a.exr.tmp", ".a.exr.checkpoint.tmp", ".a.exr.checkpoint.lock.tmp"] {
+        assert!(Command::new("mkfifo").arg(desk.path(name)).status().unwrap().success());
+        build(&desk, "--samples 1 -o a.exr --checkpoint").expect(2, &["is not a file", "remove"]);
+        fs::remove_file(desk.path(name)).unwrap();
+    }
+    assert!(Command::new("mkfifo").arg(desk.path("pipe")).status().unwrap().success());
+    let from = build(&desk, "--samples 1 -o a.exr --resume=pipe --checkpoint=kept");
+    from.expect(2, &["cannot read `pipe`: it is not a file"]);
+}
+
 #[cfg(unix)]
 #[test]
 fn killed_at_any_moment_it_goes_on_and_the_bytes_are_the_same() {

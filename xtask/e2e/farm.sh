@@ -109,6 +109,13 @@ kill -9 "${daemon[$worker]}" "$step" "$lost"
 [ ! -e parts/2.exr ] || { echo "share 2 was done before its worker was lost"; exit 1; }
 echo "  worker $worker is lost in the middle of share 2"
 
+# Whoever makes it again goes on from its checkpoint: asked for another picture, the same script refuses to.
+if SHARES=4 SLURM_ARRAY_TASK_ID=2 "$scripts/shares.sbatch" "$scene" parts "${flags[@]}" --seed 7 2>"$desk/other.log"; then
+  echo "the lost share would begin afresh"
+  exit 1
+fi
+grep -q 'cannot go on from' "$desk/other.log" && grep -q 'its seed' "$desk/other.log" || { cat "$desk/other.log"; exit 1; }
+
 # Its share once more, on another; the merge when all are there.
 scancel "${array}_2"
 again=$(SHARES=4 sbatch --parsable --array=2 --exclude="$worker" --output="$desk/share-again.log" \
@@ -124,6 +131,25 @@ sed 's/^/  /' "$desk/merge.log"
 "$rtc" build "$scene" "${flags[@]}" -j 1 -o one.exr --quiet
 cmp one.exr all.exr
 echo "  the same bytes as one process with one thread makes alone"
+
+# The line of the Kubernetes job, as a pod runs it.
+mkdir pods
+cp "$scene" pods/scene.rt
+line=$(python3 - "$scripts/kubernetes.yaml" <<'PYTHON'
+import re, sys
+text = open(sys.argv[1]).read()
+print(" ".join(re.search(r"- >-\n((?: {14,}.*\n)+)", text).group(1).split()))
+PYTHON
+)
+line=${line/exec rtc/exec \"\$RTC\"}
+line=${line/--samples 1024/--samples 16 --size 80x60}
+for index in 0 1 2 3 4 5 6 7; do
+  (cd pods && JOB_COMPLETION_INDEX=$index sh -c "$line" 2>"$desk/pod.log") || { cat "$desk/pod.log"; exit 1; }
+done
+"$rtc" merge pods/parts/*.exr -o pods/all.exr --quiet
+"$rtc" build pods/scene.rt --samples 16 --size 80x60 -o pods/one.exr -j 1 --quiet
+cmp pods/one.exr pods/all.exr
+echo "  eight pods, to the same bytes"
 
 # A film by runs of its frames; whoever puts it together makes none of them again.
 film=("$root/examples/turntable.rt" --frames 7 --sweep "angle = 0deg until 360deg" --size 80x60 --samples 8)

@@ -189,6 +189,13 @@ pub(in crate::check) fn malformed_sweep(span: Span) -> Diagnostic {
         .help("such as `--sweep \"t = 0 to 1\"`; `\"angle = 0deg until 360deg\"` ends a frame before 360deg, for a loop")
 }
 
+/// A `--sweep` with more than two values.
+pub(in crate::check) fn sweep_of_more(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0503, "a sweep goes from one value to another, and this has more", span)
+        .at("two values belong here")
+        .help("sweep a number, and choose the values by it in the scene: `if t < 0.5 then … else …`")
+}
+
 /// A sweep of a param whose values have nothing between them.
 pub(in crate::check) fn sweeps_nothing(name: &str, what: &str, span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0503, format!("`{name}` is {what}, and nothing lies between two of these"), span)

@@ -5,11 +5,12 @@ use super::super::interrupt::Interrupt;
 use super::super::target::{Target, replace};
 use super::super::trace::Plan;
 use super::super::{Problem, input};
-use rt_lang::aov::Aov;
+use rt_lang::aov::{self, Aov};
 use rt_lang::output::{Depth, Facts};
 use rt_lang::scene::{Scene, identity::Identity};
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// The largest record that is read.
@@ -52,6 +53,7 @@ pub fn subject(scene: &Scene, plan: &Plan, aovs: &[Aov], depth: Depth) -> Subjec
         ("tonemap", scene.develop.tonemap.word().to_string()),
         ("bits", if depth == Depth::Sixteen { "16" } else { "8" }.to_string()),
         ("channels", names.join(" ")),
+        ("names", aov::names(aovs, plan.from()).map_or("none".into(), |hash| hash.to_hex().to_string())),
         ("denoising", if plan.denoises() { "yes" } else { "no" }.to_string()),
     ];
     subject.extend(more.map(|(name, value)| (name.to_string(), value)));
@@ -72,8 +74,9 @@ fn path(targets: &[Target]) -> Option<PathBuf> {
 /// Looks whether a frame is done.
 pub fn find(subject: &Subject, targets: &[Target]) -> Result<Found, Problem> {
     let Some(path) = path(targets).filter(|path| path.exists()) else { return Ok(Found::Nothing) };
-    let text = String::from_utf8(input::read_bytes(&path, LARGEST)?).unwrap_or_default();
-    let recorded: BTreeMap<&str, &str> = text.lines().filter_map(|line| line.split_once(": ")).collect();
+    let text = String::from_utf8(input::read_plain(&path, LARGEST)?).unwrap_or_default();
+    // Names of files may hold anything, values hold no colons.
+    let recorded: BTreeMap<&str, &str> = text.lines().filter_map(|line| line.rsplit_once(": ")).collect();
     let mut different = vec![];
     for (name, value) in subject {
         match recorded.get(name.as_str()) {
@@ -91,8 +94,8 @@ pub fn find(subject: &Subject, targets: &[Target]) -> Result<Found, Problem> {
         return Ok(Found::Other(format!("it differs in {}", different.join(", "))));
     }
     for target in targets {
-        let written = recorded.get(file_entry(target).as_str()).copied();
-        if written.is_none() || written != digest(&target.path).as_deref() {
+        let written = recorded.get(file_entry(target).as_str());
+        if !written.is_some_and(|written| is_as_written(&target.path, written)) {
             return Ok(Found::Other(format!("`{}` is not the file that was made", target.path.display())));
         }
     }
@@ -114,9 +117,20 @@ fn file_entry(target: &Target) -> String {
     format!("file {}", name.escape_debug().to_string().replace(':', "\\u{3a}"))
 }
 
-/// Of a file's bytes; none where it cannot be read.
+/// How many bytes a file has, and their hash. None where it cannot be read.
 fn digest(path: &Path) -> Option<String> {
-    Some(blake3::hash(&fs::read(path).ok()?).to_hex().to_string())
+    let file = input::open_plain(path).ok()?;
+    let length = file.metadata().ok()?.len();
+    let mut hasher = blake3::Hasher::new();
+    // What grows meanwhile is not read without end.
+    hasher.update_reader(file.take(length)).ok()?;
+    Some(format!("{length} {}", hasher.finalize().to_hex()))
+}
+
+/// Whether a file is still that of its digest. One of another length is not read, however long it is.
+fn is_as_written(path: &Path, written: &str) -> bool {
+    let length = fs::metadata(path).map(|file| file.len().to_string()).ok();
+    length.as_deref() == written.split(' ').next() && digest(path).as_deref() == Some(written)
 }
 
 #[cfg(test)]
@@ -141,6 +155,10 @@ mod tests {
         assert!(
             matches!(find(&subject("0"), &targets).unwrap(), Found::Other(why) if why.contains("is not the file"))
         );
+        fs::write(&target.path, "another of as many bytes as it").unwrap();
+        record(&subject("0"), &targets, &Interrupt::default()).unwrap();
+        fs::write(&target.path, "another of as many bytes as It").unwrap();
+        assert!(matches!(find(&subject("0"), &targets).unwrap(), Found::Other(_)));
         fs::write(path(&targets).unwrap(), [0xff, b'\n']).unwrap();
         assert!(matches!(find(&subject("0"), &targets).unwrap(), Found::Other(_)));
         assert_eq!(find(&subject("0"), &[]).unwrap(), Found::Nothing);

@@ -118,7 +118,7 @@ impl Studio<'_, '_> {
     fn shoot(&mut self) -> Result<Option<Vec<String>>, Problem> {
         let orders = self.orders;
         let Some(first) = self.compile(1)? else { return Ok(None) };
-        build::refuse_inputs_as_outputs(&self.disk.read_paths(), &orders.paths())?;
+        orders.refuse_inputs(&self.disk.read_paths())?;
         let Some(scene) = &first.scene else { return Ok(None) };
         self.choose_exposure(scene);
         // Better now than after a night.
@@ -270,7 +270,7 @@ impl Studio<'_, '_> {
 fn read(targets: &[Target]) -> Result<(Picture, Facts), Problem> {
     let exr = targets.iter().find(|target| target.format == Format::Exr);
     let exr = exr.ok_or_else(|| Problem::new("no EXR holds the frame"))?;
-    let bytes = input::read_bytes(&exr.path, keep::LARGEST)?;
+    let bytes = input::read_plain(&exr.path, keep::LARGEST)?;
     decode_shown(&bytes)
         .map_err(|reason| Problem::new(format!("`{}` cannot be read: {reason}", exr.path.display())))
 }

@@ -5,6 +5,7 @@ use super::super::input::is_standard;
 use super::super::target::Target;
 use rt_lang::output::Format;
 use rt_lang::output::animation::Motion;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What `-o` means where there are frames.
@@ -158,6 +159,35 @@ impl Pattern {
         format!("{before}{number:0width$}{after}").into()
     }
 
+    /// Whose file this is; none where it is of no frame.
+    pub fn number(&self, path: &str) -> Option<u32> {
+        let number = path.strip_prefix(&self.before)?.strip_suffix(&self.after)?.parse().ok()?;
+        (self.path(number).to_str() == Some(path)).then_some(number)
+    }
+
+    /// The files of some frames that are there, each with whether it is a link. Of a folder of a million frames that are to be
+    /// made it costs nothing. The numbers are in order.
+    pub fn there(&self, numbers: &[u32]) -> Vec<(PathBuf, bool)> {
+        let is_link = |path: PathBuf| {
+            let link = fs::symlink_metadata(&path).ok()?.is_symlink();
+            Some((path, link))
+        };
+        if self.after.contains(std::path::is_separator) {
+            // A folder a frame.
+            return numbers.iter().filter_map(|number| is_link(self.path(*number))).collect();
+        }
+        let (folder, _) =
+            self.before.split_at(self.before.rfind(std::path::is_separator).map_or(0, |at| at + 1));
+        let listed =
+            fs::read_dir(if folder.is_empty() { "." } else { folder }).into_iter().flatten().flatten();
+        let of_frame = |entry: fs::DirEntry| {
+            let path = format!("{folder}{}", entry.file_name().to_str()?);
+            let wanted = numbers.binary_search(&self.number(&path)?).is_ok();
+            wanted.then(|| (path.into(), entry.file_type().is_ok_and(|kind| kind.is_symlink())))
+        };
+        listed.filter_map(of_frame).collect()
+    }
+
     /// Where a picture goes.
     pub fn target(&self, number: u32) -> Result<Target, Problem> {
         Target::from_argument(&self.path(number))
@@ -200,6 +230,24 @@ mod tests {
         assert_eq!(path("out.{04}.exr"), "out.0007.exr");
         assert_eq!(path("{}.png"), "7.png");
         assert_eq!(path("a{2}b/c.jpg"), "a07b/c.jpg");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn pictures_that_are_there_are_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let text = format!("{}/f{{2}}.png", folder.path().display());
+        let Ok(Some(pattern)) = Pattern::in_name(&text) else { panic!("{text}") };
+        let path = |name: &str| folder.path().join(name);
+        for name in ["f01.png", "f1.png", "f07.png", "f100.png", "f01.png.made", "f+1.png"] {
+            fs::write(path(name), "").unwrap();
+        }
+        std::os::unix::fs::symlink("f1.png", path("f03.png")).unwrap();
+        let mut there = pattern.there(&[1, 2, 3, 100]);
+        there.sort();
+        assert_eq!(there, [(path("f01.png"), false), (path("f03.png"), true), (path("f100.png"), false)]);
+        let each = Pattern::in_name(&format!("{}{{}}.png/no", path("f0").display())).unwrap().unwrap();
+        assert_eq!(each.there(&[1]), []);
     }
 
     #[test]

@@ -33,7 +33,8 @@ pub fn frames(
         Some(Only::AutoOf(runs)) => {
             let number = task(variable)?;
             if *runs > of {
-                return Err(Problem::new(format!("{of} frames cannot be divided into {runs} runs")));
+                let problem = Problem::new(format!("{of} frames cannot be divided into {runs} runs"));
+                return Err(problem.help(format!("submit at most {of} tasks: `--only auto/{of}`")));
             }
             if !(1..=*runs).contains(&number) {
                 let counted = format!("they are counted from 1 to {runs}");
@@ -46,7 +47,7 @@ pub fn frames(
 }
 
 fn task(variable: &dyn Fn(&str) -> Option<String>) -> Result<u32, Problem> {
-    shard::task(variable).ok_or_else(|| {
+    shard::task(variable)?.ok_or_else(|| {
         let problem = Problem::new("no scheduler says which frame this is");
         problem
             .help("`--only auto` asks SLURM_ARRAY_TASK_ID, then JOB_COMPLETION_INDEX; else give `--only 7`")
@@ -81,6 +82,7 @@ mod tests {
         assert_eq!(ask(Only::Auto, &[("JOB_COMPLETION_INDEX", "0")]), Ok(vec![1]));
         assert!(ask(Only::Auto, &slurm("49")).is_err() && ask(Only::Auto, &slurm("0")).is_err());
         assert!(ask(Only::Auto, &[]).is_err_and(|why| why.contains("no scheduler")));
+        assert!(ask(Only::Auto, &slurm("x")).is_err_and(|why| why.contains("`x`")));
         let of_five = |run: &'static str| ask(Only::AutoOf(5), &slurm(run)).unwrap();
         let all: Vec<u32> = ["1", "2", "3", "4", "5"].into_iter().flat_map(of_five).collect();
         assert_eq!(all, (1..=48).collect::<Vec<u32>>(), "each frame in one run");

@@ -66,11 +66,43 @@ impl Orders {
         Ok(orders)
     }
 
-    /// Every file that is written.
-    pub fn paths(&self) -> Vec<PathBuf> {
-        let films = self.films.iter().map(|(path, _)| place(path));
-        let frames = |pattern| self.numbers.iter().map(move |number| Pattern::path(pattern, *number));
-        films.chain(self.each.iter().flat_map(frames)).collect()
+    /// Refuses to replace what the film is made of. Only a file that is there can be one of these, and is it by its name unless it
+    /// is a link; so a film of a million frames is seen through at once.
+    pub fn refuse_inputs(&self, inputs: &[PathBuf]) -> Result<(), Problem> {
+        let names: BTreeSet<_> =
+            inputs.iter().filter_map(|input| Some(build::same(input).file_name()?.to_owned())).collect();
+        let there = self.each.iter().flat_map(|pattern| pattern.there(&self.numbers));
+        let pictures =
+            there.filter(|(path, link)| *link || path.file_name().is_some_and(|name| names.contains(name)));
+        let paths: Vec<PathBuf> = self.film_paths().chain(pictures.map(|(path, _)| path)).collect();
+        build::refuse_inputs_as_outputs(inputs, &paths)
+    }
+
+    fn film_paths(&self) -> impl Iterator<Item = PathBuf> {
+        self.films.iter().map(|(path, _)| place(path))
+    }
+
+    /// A file that two outputs would go to, if there is one.
+    fn twice(&self) -> Option<PathBuf> {
+        let mut known = BTreeSet::new();
+        if let Some(film) = self.film_paths().find(|path| !known.insert(path.clone())) {
+            return Some(film);
+        }
+        let is_of = |pattern: &Pattern, path: &Path| {
+            let number = path.to_str().and_then(|path| pattern.number(path));
+            number.is_some_and(|number| self.numbers.binary_search(&number).is_ok())
+        };
+        (0..self.each.len()).find_map(|at| {
+            let (before, pattern) = (&self.each[..at], &self.each[at]);
+            let film = known.iter().find(|film| is_of(pattern, film)).cloned();
+            // Most films have one name of pictures, and nothing to compare.
+            let paths = self.numbers.iter().map(|number| pattern.path(*number));
+            film.or_else(|| {
+                paths
+                    .take_while(|_| !before.is_empty())
+                    .find(|path| before.iter().any(|other| is_of(other, path)))
+            })
+        })
     }
 
     /// The pictures of a frame.
@@ -101,12 +133,11 @@ impl Orders {
     }
 
     fn refuse_misfits(&self, arguments: &Build) -> Result<(), Problem> {
-        let (first, paths) = (self.targets(1)?, self.paths());
-        let mut known = BTreeSet::new();
-        if let Some(twice) = paths.iter().find(|path| !known.insert(*path)) {
+        let first = self.targets(1)?;
+        if let Some(twice) = self.twice() {
             return Err(Problem::new(format!("the output `{}` is given twice", twice.display())));
         }
-        build::refuse_inputs_as_outputs(&arguments.scenes, &paths)?;
+        self.refuse_inputs(&arguments.scenes)?;
         build::refuse_idle_aovs(&arguments.aov, &first)?;
         let png = |(_, form): &(PathBuf, Form)| *form == Form::Own(Motion::Apng);
         let depth = if self.films.iter().any(png) { Depth::Eight } else { arguments.taking.look.bits };

@@ -1,0 +1,229 @@
+//! Files beside a place, to be written and then moved there.
+//!
+//! Some are always called the same, and are of one process at a time: of the one that holds the file's lock while the name is
+//! that of this file. What a process has left that was killed is nobody's, and goes when the next one comes. Nobody removes or
+//! moves a file of that name but under its lock, and only after seeing that the name is still of it: between making a file and
+//! locking it others may come, who take it for one that was left.
+//!
+//! The disks of some farms know no locks. There a file gets a name that no other has, and what was left stays.
+
+use super::interrupt::Interrupt;
+use std::fs::{self, File, OpenOptions, Permissions, TryLockError};
+use std::io::{self, ErrorKind};
+use std::path::Path;
+use tempfile::{Builder, NamedTempFile};
+
+/// How the names of files end that are being written.
+const SUFFIX: &str = ".tmp";
+
+/// How often others may come between before it is said that they are at it.
+const ATTEMPTS: u32 = 16;
+
+/// Makes a file in a folder by a name that no other has. It gets these permissions, or those that the umask leaves.
+pub fn any(
+    folder: &Path,
+    permissions: Option<Permissions>,
+    interrupt: &Interrupt,
+) -> io::Result<NamedTempFile> {
+    create(interrupt, || builder(permissions).prefix(".rtc-").tempfile_in(folder))
+}
+
+/// Makes the file `.NAME.tmp` in a folder and takes it for this process. While it is of another one the error is
+/// [`ErrorKind::ResourceBusy`], and where there is something that is no plain file [`ErrorKind::InvalidInput`].
+pub fn always(
+    folder: &Path,
+    name: &str,
+    permissions: Option<Permissions>,
+    interrupt: &Interrupt,
+) -> io::Result<NamedTempFile> {
+    let (prefix, path) = (format!(".{name}"), folder.join(format!(".{name}{SUFFIX}")));
+    for _ in 0..ATTEMPTS {
+        // Not while a file is being made, for whoever is asked to end waits for that, and these files are of others.
+        let made = remove_left(&path).and_then(|()| {
+            let mut builder = builder(permissions.clone());
+            builder.prefix(&prefix).rand_bytes(0);
+            create(interrupt, || take(builder.tempfile_in(folder)?))
+        });
+        match made {
+            // Others came between.
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            // There are no locks.
+            Err(error) if error.kind() == ErrorKind::Unsupported => {
+                let prefix = format!("{prefix}-");
+                return create(interrupt, || builder(permissions).prefix(&prefix).tempfile_in(folder));
+            }
+            made => return made,
+        }
+    }
+    Err(ErrorKind::ResourceBusy.into())
+}
+
+/// Whether the name of a file is still of it.
+pub fn is_own(file: &NamedTempFile) -> bool {
+    is_at(file.as_file(), file.path())
+}
+
+/// Removes a file, unless its name is of another one by now.
+pub fn discard(file: NamedTempFile) {
+    if !is_own(&file) {
+        // Kept is what others have there.
+        let _ = file.keep();
+    }
+}
+
+fn builder<'a>(permissions: Option<Permissions>) -> Builder<'a, 'static> {
+    let mut builder = Builder::new();
+    builder.suffix(SUFFIX);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(permissions.unwrap_or(Permissions::from_mode(0o666)));
+    }
+    #[cfg(not(unix))]
+    let _ = permissions;
+    builder
+}
+
+fn create(
+    interrupt: &Interrupt,
+    make: impl FnOnce() -> io::Result<NamedTempFile>,
+) -> io::Result<NamedTempFile> {
+    interrupt.create(|| {
+        let file = make()?;
+        let path = file.path().to_path_buf();
+        Ok((file, path))
+    })
+}
+
+/// Locks a file that was made. Where another process has come before, it is that one's: it already exists.
+fn take(file: NamedTempFile) -> io::Result<NamedTempFile> {
+    let locked = lock(file.as_file());
+    match locked {
+        Ok(()) if is_own(&file) => Ok(file),
+        Err(error) if error.kind() == ErrorKind::Unsupported => Err(error),
+        _ => {
+            let _ = file.keep();
+            Err(ErrorKind::AlreadyExists.into())
+        }
+    }
+}
+
+/// Removes what a process has left that was killed, and not what one is writing.
+fn remove_left(path: &Path) -> io::Result<()> {
+    let left = match fs::symlink_metadata(path) {
+        // Opening a pipe may never end.
+        Ok(left) if !left.is_file() => Err(ErrorKind::InvalidInput.into()),
+        // Some systems lock only what may be written.
+        Ok(_) => OpenOptions::new().read(true).write(true).open(path),
+        Err(error) => Err(error),
+    };
+    let left = match left {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+        left => left?,
+    };
+    lock(&left)?;
+    match is_at(&left, path) {
+        true => fs::remove_file(path),
+        false => Err(ErrorKind::AlreadyExists.into()),
+    }
+}
+
+/// Locks a file for this process. While another one has it the error is [`ErrorKind::ResourceBusy`], and where nothing can
+/// be locked [`ErrorKind::Unsupported`].
+fn lock(file: &File) -> io::Result<()> {
+    file.try_lock().map_err(|error| match error {
+        TryLockError::WouldBlock => ErrorKind::ResourceBusy.into(),
+        TryLockError::Error(_) => ErrorKind::Unsupported.into(),
+    })
+}
+
+/// Whether what stands at a path is this file.
+fn is_at(file: &File, path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        let id = |metadata: fs::Metadata| (metadata.dev(), metadata.ino());
+        let (Ok(own), Ok(there)) = (file.metadata(), fs::symlink_metadata(path)) else { return false };
+        id(own) == id(there)
+    }
+    // Elsewhere nobody can remove a file that is open.
+    #[cfg(not(unix))]
+    {
+        let _ = (file, path);
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicU32, Ordering::SeqCst};
+    use std::thread;
+
+    fn claimed(folder: &Path) -> io::Result<NamedTempFile> {
+        always(folder, "a.png", None, &Interrupt::default())
+    }
+
+    #[test]
+    fn a_name_is_of_one_at_a_time_and_what_was_left_goes() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(".a.png.tmp");
+        fs::write(&path, "of one that was killed").unwrap();
+        let first = claimed(folder.path()).unwrap();
+        assert_eq!((first.path(), fs::read(&path).unwrap()), (path.as_path(), vec![]));
+        assert_eq!(claimed(folder.path()).unwrap_err().kind(), ErrorKind::ResourceBusy);
+        drop(first);
+        assert!(claimed(folder.path()).is_ok() && !path.exists());
+    }
+
+    #[test]
+    fn many_at_once_never_share_a_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let (within, taken) = (AtomicU32::new(0), AtomicU32::new(0));
+        thread::scope(|scope| {
+            for _ in 0..8 {
+                scope.spawn(|| {
+                    for _ in 0..400 {
+                        let Ok(file) = claimed(folder.path()) else { continue };
+                        assert_eq!(within.fetch_add(1, SeqCst), 0, "of two at once");
+                        assert!(is_own(&file), "the name is of another");
+                        taken.fetch_add(1, SeqCst);
+                        within.fetch_sub(1, SeqCst);
+                        // As often left behind, as by one that was killed.
+                        if taken.load(SeqCst) % 2 == 0 {
+                            let _ = file.keep();
+                        }
+                    }
+                });
+            }
+        });
+        assert!(taken.load(SeqCst) > 100, "{taken:?}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_name_that_is_of_another_by_now_is_left_to_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(".a.png.tmp");
+        let file = claimed(folder.path()).unwrap();
+        fs::remove_file(&path).unwrap();
+        fs::write(&path, "of another").unwrap();
+        assert!(!is_own(&file));
+        discard(file);
+        assert_eq!(fs::read(&path).unwrap(), b"of another");
+        let old = NamedTempFile::new_in(folder.path()).unwrap();
+        fs::rename(&path, old.path()).unwrap();
+        let place = old.path().to_path_buf();
+        assert_eq!(take(old).unwrap_err().kind(), ErrorKind::AlreadyExists);
+        assert_eq!(fs::read(place).unwrap(), b"of another");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_pipe_is_not_waited_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let made = std::process::Command::new("mkfifo").arg(folder.path().join(".a.png.tmp")).status();
+        assert!(made.unwrap().success());
+        assert_eq!(claimed(folder.path()).unwrap_err().kind(), ErrorKind::InvalidInput);
+    }
+}
