@@ -47,6 +47,20 @@ fn shares_put_together_are_the_picture_of_one_machine() {
     desk.run("merge part1.exr -o no.exr").expect(2, &["shares 2, 3 of 3 are missing"]);
     desk.run("merge --partial part1.exr part3.exr -o look.png")
         .expect(0, &["share 2 of 3 is missing", "7 samples"]);
+    // What lacks samples says so, and what has all of them is like any picture.
+    desk.run("merge --partial part1.exr part3.exr -o some.exr -q").expect(0, &[]);
+    desk.run("merge --partial part2.exr -o look.png").expect(0, &["of 1 share\n"]);
+    let says = |file: &str| desk.get(file).windows(10).any(|bytes| bytes == b"rtc.shares");
+    assert_eq!((says("some.exr"), says("all.exr")), (true, false));
+    for (flag, said) in
+        [("--exposure 4", "its exposure (4, not "), ("--tonemap none", "its tonemap (none, not ")]
+    {
+        build(&desk, &format!("--samples 10 --shard 2/3 {flag} -o foreign.exr")).expect(0, &[]);
+        for order in ["part1.exr foreign.exr part3.exr", "part3.exr part1.exr foreign.exr"] {
+            desk.run(&format!("merge {order} -o no.exr"))
+                .expect(2, &["`foreign.exr` does not go with", said]);
+        }
+    }
     fs::copy(desk.path("part2.exr"), desk.path("again.exr")).unwrap();
     desk.run("merge part1.exr part2.exr again.exr -o no.exr")
         .expect(2, &["`again.exr` is share 2 of 3, and so is `part2.exr`"]);

@@ -33,7 +33,8 @@ pub fn frames(
         Some(Only::AutoOf(runs)) => {
             let number = task(variable)?;
             if *runs > of {
-                return Err(Problem::new(format!("{of} frames cannot be divided into {runs} runs")));
+                let problem = Problem::new(format!("{of} frames cannot be divided into {runs} runs"));
+                return Err(problem.help("have as many runs as frames, or fewer"));
             }
             if !(1..=*runs).contains(&number) {
                 let counted = format!("they are counted from 1 to {runs}");
