@@ -11,7 +11,7 @@ mod merge;
 use crate::output::{Channels, Facts, Picture, Words, decode_words, encode_exr};
 use crate::render::film::{MOST_SAMPLES, Pixel, WORDS};
 use crate::render::making::Making;
-use crate::render::{Film, Window};
+use crate::render::{Film, Shown, Window};
 use crate::scene::{Tonemap, identity::Identity};
 pub use head::Head;
 pub use merge::Merging;
@@ -47,6 +47,7 @@ const FORM: &str = "rtc.saved.version";
 const PROGRAM: &str = "rtc.saved.program";
 const SHARE: &str = "rtc.saved.share";
 const START: &str = "rtc.saved.start";
+const JUDGED: &str = "rtc.saved.judged";
 const SCALE: &str = "rtc.saved.scale";
 const CHECKSUM: &str = "rtc.saved.checksum";
 
@@ -146,6 +147,7 @@ impl Subject {
             (START.into(), making.start().to_string()),
             (SCALE.into(), format!("{:e}", making.film().scale())),
         ]);
+        texts.extend(making.judged().map(|shown| (JUDGED.into(), judged_words(shown))));
         texts.extend(self.share.map(|share| (SHARE.into(), share.to_string())));
         texts.sort();
         texts
@@ -180,17 +182,28 @@ impl Saved {
         let head = Head::decode(file)?;
         let mut words = decode_words(file).map_err(|reason| Refused(format!("is no EXR: {reason}")))?;
         words.sort_by_key(|words| CHANNELS.iter().position(|name| *name == words.name));
-        let Head { subject, facts, window, start, scale, texts, checksum: said } = head;
+        let Head { subject, facts, window, start, scale, judged, texts, checksum: said } = head;
         let channels = Channels { words, texts, ..Channels::default() };
         if !channels.words.iter().map(|words| words.name.as_str()).eq(CHANNELS)
             || said != Some(checksum(&channels, &facts))
         {
             return refused("is damaged: its checksum is another");
         }
-        let making = making(window, start, scale, &channels.words)
+        let making = making(window, start, scale, judged, &channels.words)
             .ok_or_else(|| Refused("holds numbers that are no sums of samples".into()))?;
         Ok(Saved { subject, making, facts })
     }
+}
+
+/// Exposure and curve, as `0.5 neutral`.
+fn judged_words(shown: Shown) -> String {
+    format!("{} {}", shown.stops, shown.tonemap.word())
+}
+
+fn judged_from(words: &str) -> Option<Shown> {
+    let (stops, tonemap) = words.split_once(' ')?;
+    let stops = stops.parse().ok().filter(|stops: &f64| stops.is_finite())?;
+    Some(Shown { stops, tonemap: Tonemap::from_word(tonemap)? })
 }
 
 /// How a picture came about, with its samples and their noise. One sample a pixel does not tell how noisy it is.
@@ -222,7 +235,13 @@ fn words(making: &Making) -> Vec<Words> {
 }
 
 /// The samples that channels hold, which are those of [`CHANNELS`] in their order.
-fn making(window: Window, start: u32, scale: f64, channels: &[Words]) -> Option<Making> {
+fn making(
+    window: Window,
+    start: u32,
+    scale: f64,
+    judged: Option<Shown>,
+    channels: &[Words],
+) -> Option<Making> {
     let (aims, sums) = channels.split_last()?;
     let pixel = |index: usize| {
         let words: Vec<u32> = sums.iter().map(|sum| sum.values.get(index).copied()).collect::<Option<_>>()?;
@@ -231,7 +250,7 @@ fn making(window: Window, start: u32, scale: f64, channels: &[Words]) -> Option<
     let pixels = (0..window.pixels()).map(pixel).collect::<Option<Vec<Pixel>>>()?;
     let within = |aim: &u32| aim.checked_add(start).is_some_and(|end| end <= MOST_SAMPLES);
     let film = Film::with_pixels(window, scale, pixels).filter(|_| aims.values.iter().all(within))?;
-    Making::resumed(film, start, &aims.values)
+    Making::resumed(film, start, &aims.values, judged)
 }
 
 /// Of texts and whole numbers, each with its name, and of how the picture came about.

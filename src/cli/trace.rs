@@ -175,6 +175,7 @@ pub fn trace(
         context.interrupt.wait()
     };
     let aovs = &context.arguments.aov;
+    let yields = places.as_ref().is_some_and(Places::is_yielding);
     let every = context.arguments.keeping.checkpoint_every;
     let mut keeper = places.map(|places| {
         Keeper::new(places, every, (&tracing.subject, &tracing.facts), context.interrupt, context.terminal)
@@ -184,7 +185,17 @@ pub fn trace(
         None => None,
     };
     let reused = before.as_mut().and_then(|before| before.samples(&tracing, window));
-    let mut making = tracing.begin(window, kept.or(reused))?;
+    let kept = match kept.map(|kept| (tracing.refuses(&kept), kept)) {
+        Some((Some(_), _)) if yields => None,
+        Some((Some(why), _)) => {
+            let problem = Problem::new(format!("cannot go on from the samples that were kept: {why}"));
+            return Err(problem
+                .help("`--resume=never` begins afresh, `--checkpoint=FILE` keeps the samples elsewhere"));
+        }
+        Some((None, kept)) => Some(kept),
+        None => None,
+    };
+    let mut making = kept.or(reused).unwrap_or_else(|| tracing.begin(window));
     if denoises && !making.is_in_halves() {
         making = making.in_halves();
     }
@@ -253,17 +264,31 @@ impl<'a> Tracing<'a> {
         Ok(Tracing { from, tracer, prepass, shown, limits, subject, facts, control })
     }
 
-    /// The picture to go on with, or a new one.
-    fn begin(&self, window: Window, kept: Option<Making>) -> Result<Making, Problem> {
-        let scale = self.prepass.scale;
-        match kept {
-            Some(making) if making.film().scale() == scale && making.film().window() == window => Ok(making),
-            Some(_) => Err(Problem::new("the checkpoint holds sums of another scale")),
-            None => {
-                let start = self.subject.share.map_or(0, |share| share.range().start);
-                Ok(Making::from_sample(window, scale, start))
-            }
+    /// A picture without samples.
+    fn begin(&self, window: Window) -> Making {
+        let start = self.subject.share.map_or(0, |share| share.range().start);
+        Making::from_sample(window, self.prepass.scale, start)
+    }
+
+    /// Why samples of this subject are none to go on with, if they are not. Which there are for a noise depends on how the
+    /// picture was to be shown.
+    fn refuses(&self, kept: &Making) -> Option<String> {
+        let (own, other) = (self.prepass.scale, kept.film().scale());
+        if own != other {
+            return Some(format!("their sums are of another scale ({other:e}, not {own:e})"));
         }
+        let judged = kept.judged().filter(|judged| self.limits.noise.is_some() && *judged != self.shown)?;
+        Some(match judged.stops == self.shown.stops {
+            false => format!(
+                "where they are was chosen for another exposure ({}, not {})",
+                judged.stops, self.shown.stops
+            ),
+            true => format!(
+                "where they are was chosen for another tonemap ({}, not {})",
+                judged.tonemap.word(),
+                self.shown.tonemap.word()
+            ),
+        })
     }
 
     fn go_on(&self, making: &mut Making, between: &mut dyn FnMut(&Making)) -> Result<Limit, Cancelled> {

@@ -23,6 +23,8 @@ pub struct Making {
     even: Option<Film>,
     /// The number of each pixel's first sample.
     start: u32,
+    /// How what is shown was when it was last judged where samples go, if it was.
+    judged: Option<Shown>,
     /// Those of the film's window, row by row.
     blocks: Vec<Block>,
 }
@@ -55,7 +57,7 @@ impl Making {
     /// The same of a share of the samples, from this one on.
     pub fn from_sample(window: Window, scale: f64, start: u32) -> Making {
         let blocks = window.tiles(BLOCK).map(|window| Block { window, samples: 0, aim: 0 }).collect();
-        Making { film: Film::new(window, scale), even: None, start, blocks }
+        Making { film: Film::new(window, scale), even: None, start, judged: None, blocks }
     }
 
     /// The same of a picture without samples, with the sums of every other sample kept apart too: two pictures of the same light
@@ -65,9 +67,9 @@ impl Making {
         Making { even: Some(even), ..self }
     }
 
-    /// One that was put aside: its film, the number of its first sample, and what each pixel was on the way to, row by row.
-    /// None where pixels of a block differ, or have more than they were to have.
-    pub fn resumed(film: Film, start: u32, aims: &[u32]) -> Option<Making> {
+    /// One that was put aside: its film, the number of its first sample, what each pixel was on the way to, row by row, and by
+    /// what it was judged. None where pixels of a block differ, or have more than they were to have.
+    pub fn resumed(film: Film, start: u32, aims: &[u32], judged: Option<Shown>) -> Option<Making> {
         let window = film.window();
         let block = |window_of: Window| {
             let mut pixels = (window_of.y..window_of.y + window_of.height)
@@ -79,7 +81,7 @@ impl Making {
             Some(Block { window: window_of, samples, aim })
         };
         let blocks = window.tiles(BLOCK).map(block).collect::<Option<Vec<Block>>>()?;
-        Some(Making { film, even: None, start, blocks })
+        Some(Making { film, even: None, start, judged, blocks })
     }
 
     /// Its sums.
@@ -108,6 +110,11 @@ impl Making {
     /// The number of each pixel's first sample.
     pub fn start(&self) -> u32 {
         self.start
+    }
+
+    /// How the picture was to be shown when a noise target last decided where samples go; none where none did.
+    pub fn judged(&self) -> Option<Shown> {
+        self.judged
     }
 
     /// How many samples each pixel is to have, row by row.
@@ -200,6 +207,7 @@ impl Making {
             self.blocks.iter_mut().filter(|block| block.samples == most).for_each(|block| block.aim = goal);
             return None;
         }
+        self.judged = Some(shown);
         let noisy = noisy(&self.film, shown, wanted);
         if !noisy.contains(&true) {
             return Some(Limit::Noise);
@@ -391,11 +399,11 @@ mod tests {
         let limits = Limits::from(Target::Samples(100));
         let mut making = Making::new(window, 1.0);
         assert_eq!(making.go_on(&limits, SHOWN), None);
-        let again = Making::resumed(making.film.clone(), 0, &making.aims());
+        let again = Making::resumed(making.film.clone(), 0, &making.aims(), None);
         assert_eq!(again.as_ref(), Some(&making));
-        assert_eq!(Making::resumed(making.film.clone(), 0, &[5; 3]), None);
+        assert_eq!(Making::resumed(making.film.clone(), 0, &[5; 3], None), None);
         let mut uneven = making.aims();
         uneven[1] = 7;
-        assert_eq!(Making::resumed(making.film.clone(), 0, &uneven), None);
+        assert_eq!(Making::resumed(making.film.clone(), 0, &uneven, None), None);
     }
 }

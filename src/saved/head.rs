@@ -1,11 +1,12 @@
 //! What a file says of the samples in it, before they are read.
 
 use super::{
-    CHANNELS, CHECKSUM, FORM, PREFIX, PROGRAM, Refused, SCALE, SHARE, START, Share, Subject, VERSION, refused,
+    CHANNELS, CHECKSUM, FORM, JUDGED, PREFIX, PROGRAM, Refused, SCALE, SHARE, START, Share, Subject, VERSION,
+    judged_from, refused,
 };
 use crate::output::{self, Facts, Frame, decode_head};
-use crate::render::Window;
 use crate::render::film::MOST_SAMPLES;
+use crate::render::{Shown, Window};
 use crate::scene::identity::Identity;
 
 /// The head of a file of sums. Nothing tells yet that they are whole.
@@ -19,6 +20,7 @@ pub struct Head {
     /// The number of the first sample.
     pub(super) start: u32,
     pub(super) scale: f64,
+    pub(super) judged: Option<Shown>,
     /// The attributes that the checksum is of.
     pub(super) texts: Vec<(String, String)>,
     pub(super) checksum: Option<String>,
@@ -40,8 +42,9 @@ impl Head {
         let share = text(SHARE).map(|text| Share::parse(text).ok_or(())).transpose();
         let start = text(START).and_then(|text| text.parse().ok()).filter(|start| *start <= MOST_SAMPLES);
         let scale = text(SCALE).and_then(|text| text.parse().ok());
-        let (Some(program), Some(identity), Ok(share), Some(start), Some(scale)) =
-            (program, identity, share, start, scale)
+        let judged = text(JUDGED).map(|words| judged_from(words).ok_or(())).transpose();
+        let (Some(program), Some(identity), Ok(share), Some(start), Some(scale), Ok(judged)) =
+            (program, identity, share, start, scale, judged)
         else {
             return refused("does not say what it is of");
         };
@@ -52,7 +55,7 @@ impl Head {
         let own = |(name, _): &(String, String)| name.starts_with(PREFIX) && name != CHECKSUM;
         let texts = head.texts.iter().filter(|text| own(text)).cloned().collect();
         let subject = Subject { program, identity, share };
-        Ok(Head { subject, facts: head.facts, window, start, scale, texts, checksum })
+        Ok(Head { subject, facts: head.facts, window, start, scale, judged, texts, checksum })
     }
 }
 

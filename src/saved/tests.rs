@@ -17,6 +17,8 @@ fn identity() -> Identity {
 
 const WINDOW: Window = Window { x: 4, y: 2, width: 20, height: 10 };
 
+const JUDGED: Option<Shown> = Some(Shown { stops: -0.1, tonemap: Tonemap::Agx });
+
 /// A film of some samples of made-up light.
 fn film(samples: Range<u32>) -> Film {
     let pixel = |index: usize| {
@@ -34,7 +36,7 @@ fn film(samples: Range<u32>) -> Film {
 
 fn saved(share: Option<Share>, samples: Range<u32>, aim: u32) -> Saved {
     let start = samples.start;
-    let making = Making::resumed(film(samples), start, &[aim; 200]).expect("all pixels are alike");
+    let making = Making::resumed(film(samples), start, &[aim; 200], JUDGED).expect("all pixels are alike");
     let facts = Facts { stops: Some(0.5), seed: Some(7), ..Facts::unknown() };
     Saved { subject: Subject { program: "rtc 0".into(), identity: identity(), share }, making, facts }
 }

@@ -102,6 +102,24 @@ fn a_share_needs_a_number_of_samples_and_an_exr() {
 }
 
 #[test]
+fn a_noise_target_goes_on_only_as_it_was_to_be_shown() {
+    let desk = desk();
+    desk.put("room.rt", CALM);
+    let noise = |rest: &str| {
+        build(&desk, &format!("--noise 2% --samples 512 --min-samples 4 -o a.exr --checkpoint {rest}"))
+    };
+    noise("--exposure 2").expect(0, &[]);
+    noise("--exposure 1").expect(2, &["another exposure (2, not 1)", "--resume=never"]);
+    noise("--exposure 2 --tonemap none").expect(2, &["another tonemap (", "not none)"]);
+    noise("--exposure 2").expect(0, &[]);
+    // A number of samples does not ask how they are shown.
+    build(&desk, "--samples 600 --exposure 1 -o a.exr --checkpoint").expect(0, &[]);
+    build(&desk, "--samples 600 --exposure 1 -o b.exr").expect(0, &[]);
+    assert_same(&desk.path("a.exr"), &desk.path("b.exr"));
+    noise("--exposure 1").expect(2, &["another exposure (2, not 1)"]);
+}
+
+#[test]
 fn what_was_kept_goes_on_to_the_same_bytes() {
     let desk = desk();
     build(&desk, "--samples 40 -o whole.exr").expect(0, &[]);
