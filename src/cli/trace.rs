@@ -14,9 +14,11 @@ use rt_lang::render::feedback::Feedback;
 use rt_lang::render::halt::{Limit, Limits};
 use rt_lang::render::making::Making;
 use rt_lang::render::{Cancelled, Control, Prepass, Shown, Structure, Tracer, Window};
-use rt_lang::saved::{self, Share, Subject};
+use rt_lang::saved::{self, Head, Share, Subject};
 use rt_lang::scene::{self, Scene, identity::Identity};
 use rt_lang::why::Provenance;
+use std::fs::{self, File};
+use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -93,6 +95,9 @@ impl<'a> Plan<'a> {
         targets: &[Target],
     ) -> Result<Plan<'a>, Problem> {
         let share = share(arguments, from.scene)?;
+        if let Some(share) = share {
+            targets.iter().try_for_each(|target| refuse_other_division(share, &target.path))?;
+        }
         let limits = limits(arguments, from.scene, share)?;
         let places = keep::places(&arguments.keeping, targets)?;
         denoise::refuse_samples(arguments, limits.samples)?;
@@ -136,6 +141,25 @@ fn share(arguments: &Build, scene: &Scene) -> Result<Option<Share>, Problem> {
         return Err(problem.help("every share must know its samples before: give `--samples N`"));
     };
     shard::share(shard, samples, &|name| std::env::var(name).ok()).map(Some)
+}
+
+/// The bytes of a file that are looked at for what it is a share of: the head of one is far smaller.
+const HEAD: u64 = 1 << 18;
+
+/// A share does not replace one of another number of shares: that may be the work of others, where a scheduler counts the tasks
+/// of a part of them.
+fn refuse_other_division(share: Share, path: &Path) -> Result<(), Problem> {
+    let mut head = vec![];
+    let is_read = fs::metadata(path).is_ok_and(|data| data.is_file())
+        && File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head)).is_ok();
+    let there = is_read.then(|| Head::decode(&head).ok()?.subject.share).flatten();
+    let Some(there) = there.filter(|there| there.of != share.of) else { return Ok(()) };
+    let (path, Share { index, of, .. }) = (path.display(), there);
+    let problem = Problem::new(format!(
+        "`{path}` is share {index} of {of}, and would be replaced by share {} of {}",
+        share.index, share.of
+    ));
+    Err(problem.help(format!("give `--shard {}/{of}` for one that goes with it, or remove it", share.index)))
 }
 
 fn limits(arguments: &Build, scene: &Scene, share: Option<Share>) -> Result<Limits, Problem> {

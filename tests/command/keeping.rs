@@ -47,6 +47,11 @@ fn shares_put_together_are_the_picture_of_one_machine() {
     desk.run("merge part1.exr -o no.exr").expect(2, &["shares 2, 3 of 3 are missing"]);
     desk.run("merge --partial part1.exr part3.exr -o look.png")
         .expect(0, &["share 2 of 3 is missing", "7 samples"]);
+    build(&desk, "--samples 10 --shard 1/2 -o part1.exr")
+        .expect(2, &["`part1.exr` is share 1 of 3, and would be replaced by share 1 of 2", "--shard 1/3"]);
+    build(&desk, "--samples 10 --shard 1/3 -o part1.exr").expect(0, &[]);
+    build(&desk, "--samples 10 --shard 1/2 -o one.exr -o half.exr").expect(0, &[]);
+    build(&desk, "--samples 10 -o one.exr").expect(0, &[]);
     // What lacks samples says so, and what has all of them is like any picture.
     desk.run("merge --partial part1.exr part3.exr -o some.exr -q").expect(0, &[]);
     desk.run("merge --partial part2.exr -o look.png").expect(0, &["of 1 share\n"]);
