@@ -5,13 +5,15 @@
 //! attributes what the sums depend on ([`Identity`]), and a checksum over all of these. What is read may be anything: it is
 //! refused, with a reason, unless it is whole and its numbers can be sums of samples.
 
+mod head;
 mod merge;
 
-use crate::output::{Channels, Facts, Frame, Picture, Words, decode_words, encode_exr};
+use crate::output::{Channels, Facts, Picture, Words, decode_words, encode_exr};
 use crate::render::film::{MOST_SAMPLES, Pixel, WORDS};
 use crate::render::making::Making;
-use crate::render::{Film, Window};
+use crate::render::{Film, Shown, Window};
 use crate::scene::{Tonemap, identity::Identity};
+pub use head::Head;
 pub use merge::Merging;
 use std::fmt;
 use std::ops::Range;
@@ -37,7 +39,7 @@ pub const CHANNELS: [&str; WORDS + 1] = [
 ];
 
 /// The form of these files. Another number is another form.
-const VERSION: &str = "1";
+const VERSION: &str = "2";
 
 // Attributes. Those of the identity have its names behind this.
 const PREFIX: &str = "rtc.saved.";
@@ -45,6 +47,7 @@ const FORM: &str = "rtc.saved.version";
 const PROGRAM: &str = "rtc.saved.program";
 const SHARE: &str = "rtc.saved.share";
 const START: &str = "rtc.saved.start";
+const JUDGED: &str = "rtc.saved.judged";
 const SCALE: &str = "rtc.saved.scale";
 const CHECKSUM: &str = "rtc.saved.checksum";
 
@@ -144,6 +147,7 @@ impl Subject {
             (START.into(), making.start().to_string()),
             (SCALE.into(), format!("{:e}", making.film().scale())),
         ]);
+        texts.extend(making.judged().map(|shown| (JUDGED.into(), judged_words(shown))));
         texts.extend(self.share.map(|share| (SHARE.into(), share.to_string())));
         texts.sort();
         texts
@@ -173,41 +177,33 @@ impl Subject {
 }
 
 impl Saved {
-    /// Reads a file.
+    /// Reads a file. Its pixels are read only where its head promises the sums, and nothing besides that takes memory.
     pub fn decode(file: &[u8]) -> Result<Saved, Refused> {
-        let (frame, facts, mut channels) =
-            decode_words(file).map_err(|reason| Refused(format!("is no EXR: {reason}")))?;
-        let text =
-            |name: &str| channels.texts.iter().find(|(n, _)| n == name).map(|(_, value)| value.clone());
-        match text(FORM) {
-            None => return refused("holds no exact sums: it is no checkpoint and no share of a picture"),
-            Some(version) if version != VERSION => return refused("is of another version of rtc"),
-            Some(_) => {}
-        }
-        let (checksum_said, program, share, start, scale) =
-            (text(CHECKSUM), text(PROGRAM), text(SHARE), text(START), text(SCALE));
-        let identity = Identity::from_values(|name| text(&format!("{PREFIX}{name}")));
-        channels.texts.retain(|(name, _)| name.starts_with(PREFIX) && name != CHECKSUM);
-        channels.words.sort_by_key(|words| CHANNELS.iter().position(|name| *name == words.name));
+        let head = Head::decode(file)?;
+        let mut words = decode_words(file).map_err(|reason| Refused(format!("is no EXR: {reason}")))?;
+        words.sort_by_key(|words| CHANNELS.iter().position(|name| *name == words.name));
+        let Head { subject, facts, window, start, scale, judged, texts, checksum: said } = head;
+        let channels = Channels { words, texts, ..Channels::default() };
         if !channels.words.iter().map(|words| words.name.as_str()).eq(CHANNELS)
-            || checksum_said != Some(checksum(&channels, &facts))
+            || said != Some(checksum(&channels, &facts))
         {
             return refused("is damaged: its checksum is another");
         }
-        let share = share.map(|text| Share::parse(&text).ok_or(text)).transpose();
-        let start = start.and_then(|text| text.parse().ok()).filter(|start| *start <= MOST_SAMPLES);
-        let scale = scale.and_then(|text| text.parse().ok());
-        match (program, identity, share, start, scale) {
-            (Some(program), Some(identity), Ok(share), Some(start), Some(scale))
-                if frame.whole == identity.size() =>
-            {
-                let making = making(frame, start, scale, &channels.words)
-                    .ok_or_else(|| Refused("holds numbers that are no sums of samples".into()))?;
-                Ok(Saved { subject: Subject { program, identity, share }, making, facts })
-            }
-            _ => refused("does not say what it is of"),
-        }
+        let making = making(window, start, scale, judged, &channels.words)
+            .ok_or_else(|| Refused("holds numbers that are no sums of samples".into()))?;
+        Ok(Saved { subject, making, facts })
     }
+}
+
+/// Exposure and curve, as `0.5 neutral`.
+fn judged_words(shown: Shown) -> String {
+    format!("{} {}", shown.stops, shown.tonemap.word())
+}
+
+fn judged_from(words: &str) -> Option<Shown> {
+    let (stops, tonemap) = words.split_once(' ')?;
+    let stops = stops.parse().ok().filter(|stops: &f64| stops.is_finite())?;
+    Some(Shown { stops, tonemap: Tonemap::from_word(tonemap)? })
 }
 
 /// How a picture came about, with its samples and their noise. One sample a pixel does not tell how noisy it is.
@@ -239,14 +235,14 @@ fn words(making: &Making) -> Vec<Words> {
 }
 
 /// The samples that channels hold, which are those of [`CHANNELS`] in their order.
-fn making(frame: Frame, start: u32, scale: f64, channels: &[Words]) -> Option<Making> {
-    let Frame { size: [width, height], offset: [x, y], whole } = frame;
-    let ends = |start: u32, length: u32, most: u32| start.checked_add(length).is_some_and(|end| end <= most);
-    if !ends(x, width, whole[0]) || !ends(y, height, whole[1]) {
-        return None;
-    }
+fn making(
+    window: Window,
+    start: u32,
+    scale: f64,
+    judged: Option<Shown>,
+    channels: &[Words],
+) -> Option<Making> {
     let (aims, sums) = channels.split_last()?;
-    let window = Window { x, y, width, height };
     let pixel = |index: usize| {
         let words: Vec<u32> = sums.iter().map(|sum| sum.values.get(index).copied()).collect::<Option<_>>()?;
         Pixel::from_words(words.try_into().ok()?)
@@ -254,7 +250,7 @@ fn making(frame: Frame, start: u32, scale: f64, channels: &[Words]) -> Option<Ma
     let pixels = (0..window.pixels()).map(pixel).collect::<Option<Vec<Pixel>>>()?;
     let within = |aim: &u32| aim.checked_add(start).is_some_and(|end| end <= MOST_SAMPLES);
     let film = Film::with_pixels(window, scale, pixels).filter(|_| aims.values.iter().all(within))?;
-    Making::resumed(film, start, &aims.values)
+    Making::resumed(film, start, &aims.values, judged)
 }
 
 /// Of texts and whole numbers, each with its name, and of how the picture came about.

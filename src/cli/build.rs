@@ -343,6 +343,10 @@ pub fn samples(traced: &Traced) -> String {
     let why = match traced.limit {
         Limit::Samples => String::new(),
         Limit::Noise => ", as wanted,".to_string(),
+        // Where pixels differ, a noise target chose among them.
+        Limit::Time if least != most => {
+            format!(", stopped by the time (again by the same noise target and `--samples {most}`),")
+        }
         Limit::Time => format!(", stopped by the time (again by `--samples {most}`),"),
     };
     format!("{count}{share}{noise}{why}")

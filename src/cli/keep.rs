@@ -29,6 +29,11 @@ impl Places {
     pub fn yielding(self) -> Places {
         Places { yields: true, ..self }
     }
+
+    /// Whether samples that do not fit are left aside.
+    pub fn is_yielding(&self) -> bool {
+        self.yields
+    }
 }
 
 /// The places that flags name, for a picture that goes to these targets; none where nothing is to be kept.

@@ -11,6 +11,9 @@ use rt_lang::render::halt::Limit;
 use rt_lang::saved::{self, Merging, Saved};
 use std::path::Path;
 
+/// The attribute of an EXR that tells which part of the picture's samples it has, where some are missing.
+const SHARES: &str = "rtc.shares";
+
 /// Puts the shares together, one after the other, so that there are never more than two of them in memory.
 pub fn run(arguments: &Merge, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
     let targets = build::targets(&arguments.outputs)?;
@@ -38,16 +41,21 @@ pub fn run(arguments: &Merge, terminal: Terminal, interrupt: &Interrupt) -> Resu
     let facts = Facts { limit: Some(Limit::Samples.word().into()), ..merging.facts().clone() };
     let facts = saved::judged(facts, film, [samples; 2]);
     let picture = saved::picture(film, identity);
-    build::write(&picture, &facts, &Channels::default(), arguments.bits, staged?)?;
+    let (shares, of) = (merging.share().of as usize - missing.len(), merging.share().of);
+    let mut channels = Channels::default();
+    if !missing.is_empty() {
+        channels.texts.push((SHARES.into(), format!("{shares} of {of}")));
+    }
+    build::write(&picture, &facts, &channels, arguments.bits, staged?)?;
     if !arguments.quiet {
         if !missing.is_empty() {
-            terminal.line(&missing_words(&missing, merging.share().of));
+            terminal.line(&missing_words(&missing, of));
         }
         let [width, height] = picture.size;
         let noise = facts.noise.map_or(String::new(), |noise| format!(" (noise {:.2} %)", noise * 100.0));
-        let shares = merging.share().of as usize - missing.len();
+        let shares = if shares == 1 { "1 share".to_string() } else { format!("{shares} shares") };
         let names = build::names(&targets);
-        terminal.line(&format!("{names}: {width}×{height}, {samples} samples{noise} of {shares} shares"));
+        terminal.line(&format!("{names}: {width}×{height}, {samples} samples{noise} of {shares}"));
     }
     Ok(Exit::Done)
 }

@@ -14,9 +14,11 @@ use rt_lang::render::feedback::Feedback;
 use rt_lang::render::halt::{Limit, Limits};
 use rt_lang::render::making::Making;
 use rt_lang::render::{Cancelled, Control, Prepass, Shown, Structure, Tracer, Window};
-use rt_lang::saved::{self, Share, Subject};
+use rt_lang::saved::{self, Head, Share, Subject};
 use rt_lang::scene::{self, Scene, identity::Identity};
 use rt_lang::why::Provenance;
+use std::fs::{self, File};
+use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -93,6 +95,9 @@ impl<'a> Plan<'a> {
         targets: &[Target],
     ) -> Result<Plan<'a>, Problem> {
         let share = share(arguments, from.scene)?;
+        if let Some(share) = share {
+            targets.iter().try_for_each(|target| refuse_other_division(share, &target.path))?;
+        }
         let limits = limits(arguments, from.scene, share)?;
         let places = keep::places(&arguments.keeping, targets)?;
         denoise::refuse_samples(arguments, limits.samples)?;
@@ -143,6 +148,25 @@ fn share(arguments: &Build, scene: &Scene) -> Result<Option<Share>, Problem> {
     shard::share(shard, samples, &|name| std::env::var(name).ok()).map(Some)
 }
 
+/// The bytes of a file that are looked at for what it is a share of: the head of one is far smaller.
+const HEAD: u64 = 1 << 18;
+
+/// A share does not replace one of another number of shares: that may be the work of others, where a scheduler counts the tasks
+/// of a part of them.
+fn refuse_other_division(share: Share, path: &Path) -> Result<(), Problem> {
+    let mut head = vec![];
+    let is_read = fs::metadata(path).is_ok_and(|data| data.is_file())
+        && File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head)).is_ok();
+    let there = is_read.then(|| Head::decode(&head).ok()?.subject.share).flatten();
+    let Some(there) = there.filter(|there| there.of != share.of) else { return Ok(()) };
+    let (path, Share { index, of, .. }) = (path.display(), there);
+    let problem = Problem::new(format!(
+        "`{path}` is share {index} of {of}, and would be replaced by share {} of {}",
+        share.index, share.of
+    ));
+    Err(problem.help(format!("give `--shard {}/{of}` for one that goes with it, or remove it", share.index)))
+}
+
 fn limits(arguments: &Build, scene: &Scene, share: Option<Share>) -> Result<Limits, Problem> {
     let mut limits = Limits::from(scene.trace.target);
     if let Some(share) = share {
@@ -180,6 +204,7 @@ pub fn trace(
         context.interrupt.wait()
     };
     let aovs = &context.arguments.aov;
+    let yields = places.as_ref().is_some_and(Places::is_yielding);
     let every = context.arguments.keeping.checkpoint_every;
     let mut keeper = places.map(|places| {
         Keeper::new(places, every, (&tracing.subject, &tracing.facts), context.interrupt, context.terminal)
@@ -189,7 +214,17 @@ pub fn trace(
         None => None,
     };
     let reused = before.as_mut().and_then(|before| before.samples(&tracing, window));
-    let mut making = tracing.begin(window, kept.or(reused))?;
+    let kept = match kept.map(|kept| (tracing.refuses(&kept), kept)) {
+        Some((Some(_), _)) if yields => None,
+        Some((Some(why), _)) => {
+            let problem = Problem::new(format!("cannot go on from the samples that were kept: {why}"));
+            return Err(problem
+                .help("`--resume=never` begins afresh, `--checkpoint=FILE` keeps the samples elsewhere"));
+        }
+        Some((None, kept)) => Some(kept),
+        None => None,
+    };
+    let mut making = kept.or(reused).unwrap_or_else(|| tracing.begin(window));
     if denoises && !making.is_in_halves() {
         making = making.in_halves();
     }
@@ -258,17 +293,31 @@ impl<'a> Tracing<'a> {
         Ok(Tracing { from, tracer, prepass, shown, limits, subject, facts, control })
     }
 
-    /// The picture to go on with, or a new one.
-    fn begin(&self, window: Window, kept: Option<Making>) -> Result<Making, Problem> {
-        let scale = self.prepass.scale;
-        match kept {
-            Some(making) if making.film().scale() == scale && making.film().window() == window => Ok(making),
-            Some(_) => Err(Problem::new("the checkpoint holds sums of another scale")),
-            None => {
-                let start = self.subject.share.map_or(0, |share| share.range().start);
-                Ok(Making::from_sample(window, scale, start))
-            }
+    /// A picture without samples.
+    fn begin(&self, window: Window) -> Making {
+        let start = self.subject.share.map_or(0, |share| share.range().start);
+        Making::from_sample(window, self.prepass.scale, start)
+    }
+
+    /// Why samples of this subject are none to go on with, if they are not. Which there are for a noise depends on how the
+    /// picture was to be shown.
+    fn refuses(&self, kept: &Making) -> Option<String> {
+        let (own, other) = (self.prepass.scale, kept.film().scale());
+        if own != other {
+            return Some(format!("their sums are of another scale ({other:e}, not {own:e})"));
         }
+        let judged = kept.judged().filter(|judged| self.limits.noise.is_some() && *judged != self.shown)?;
+        Some(match judged.stops == self.shown.stops {
+            false => format!(
+                "where they are was chosen for another exposure ({}, not {})",
+                judged.stops, self.shown.stops
+            ),
+            true => format!(
+                "where they are was chosen for another tonemap ({}, not {})",
+                judged.tonemap.word(),
+                self.shown.tonemap.word()
+            ),
+        })
     }
 
     fn go_on(&self, making: &mut Making, between: &mut dyn FnMut(&Making)) -> Result<Limit, Cancelled> {

@@ -16,7 +16,7 @@ use crate::scene::Tonemap;
 use rayon::prelude::*;
 use std::fmt;
 
-pub use openexr::{DENOISED, decode as decode_exr, decode_shown, decode_words};
+pub use openexr::{DENOISED, decode as decode_exr, decode_head, decode_shown, decode_words};
 
 /// The most pixels a picture in memory may have: 16384 × 8192.
 pub const MOST_PIXELS: u64 = 1 << 27;
@@ -117,6 +117,21 @@ pub struct Frame {
     pub offset: [u32; 2],
     /// Width and height of the whole picture.
     pub whole: [u32; 2],
+}
+
+/// What the head of an EXR says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Head {
+    /// Where its pixels lie.
+    pub frame: Frame,
+    /// How the picture came about.
+    pub facts: Facts,
+    /// The attributes that are texts, by their names.
+    pub texts: Vec<(String, String)>,
+    /// The names of the channels of whole numbers.
+    pub words: Vec<String>,
+    /// Those of all others.
+    pub others: Vec<String>,
 }
 
 /// A channel of 32-bit floats.

@@ -1,13 +1,15 @@
 //! OpenEXR: scene radiance in 32-bit floats, with how it came about in the attributes.
 
 use super::{
-    CannotDecode, CannotEncode, Channels, Facts, Frame, MOST_PIXELS, Picture, Plane, Words, finite, share,
-    unless_whole,
+    CannotDecode, CannotEncode, Channels, Facts, Frame, Head, MOST_PIXELS, Picture, Plane, Words, finite,
+    share, unless_whole,
 };
 use crate::scene::Tonemap;
 use exr::image::read::specific_channels::ReadSpecificChannel;
 use exr::meta::MetaData;
-use exr::meta::attribute::{AttributeValue, Chromaticities, IntegerBounds, LineOrder, Text};
+use exr::meta::attribute::{
+    AttributeValue, ChannelDescription, Chromaticities, IntegerBounds, LineOrder, SampleType, Text,
+};
 use exr::meta::header::{ImageAttributes, LayerAttributes};
 use exr::prelude::{
     AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer, ReadChannels,
@@ -180,38 +182,49 @@ fn decode_colors(file: &[u8], [r, g, b]: [&str; 3]) -> Result<(Picture, Facts), 
     Ok((picture, facts(&layer.attributes)))
 }
 
-/// The most channels that a file may have whose whole numbers are read.
-const MOST_CHANNELS: usize = 64;
-
-/// Reads the channels of whole numbers of the first layer, by name, and the attributes that are texts.
-pub fn decode_words(file: &[u8]) -> Result<(Frame, Facts, Channels), CannotDecode> {
-    let refuse = |error: exr::error::Error| CannotDecode(error.to_string());
+/// What the head of a file of one layer says, from its first bytes alone.
+pub fn decode_head(file: &[u8]) -> Result<Head, CannotDecode> {
     let meta = refuse_large(file)?;
-    if meta.headers.iter().any(|header| header.channels.list.len() > MOST_CHANNELS) {
-        return Err(CannotDecode(format!("it has more than {MOST_CHANNELS} channels")));
-    }
-    let reader = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
-    let image = reader.all_attributes().from_buffered(Cursor::new(file)).map_err(refuse)?;
-    let (layer, display) = (image.layer_data, image.attributes.display_window);
-    let mut channels = Channels::default();
-    for AnyChannel { name, sample_data, .. } in layer.channel_data.list {
-        if let FlatSamples::U32(values) = sample_data {
-            channels.words.push(Words { name: name.to_string(), values });
-        }
-    }
-    let texts = layer.attributes.other.iter().filter_map(|(name, value)| match value {
+    let [header] = meta.headers.as_slice() else {
+        return Err(CannotDecode(format!("it has {} layers, and one is wanted", meta.headers.len())));
+    };
+    let (layer, display) = (&header.own_attributes, header.shared_attributes.display_window);
+    let offset = layer.layer_position - display.position;
+    let [Ok(x), Ok(y)] = [offset.x(), offset.y()].map(u32::try_from) else {
+        return Err(CannotDecode("its pixels lie outside of the picture".into()));
+    };
+    let texts = layer.other.iter().filter_map(|(name, value)| match value {
         AttributeValue::Text(text) => Some((name.to_string(), text.to_string())),
         _ => None,
     });
-    channels.texts = texts.collect();
-    channels.texts.sort();
-    let offset = layer.attributes.layer_position - display.position;
+    let mut texts: Vec<(String, String)> = texts.collect();
+    texts.sort();
+    let (words, others) = header.channels.list.iter().partition::<Vec<_>, _>(|channel| {
+        channel.sample_type == SampleType::U32 && channel.sampling == Vec2(1, 1)
+    });
+    let names = |channels: Vec<&ChannelDescription>| {
+        channels.into_iter().map(|channel| channel.name.to_string()).collect()
+    };
     let frame = Frame {
-        size: [layer.size.x() as u32, layer.size.y() as u32],
-        offset: [offset.x().max(0) as u32, offset.y().max(0) as u32],
+        size: [header.layer_size.x() as u32, header.layer_size.y() as u32],
+        offset: [x, y],
         whole: [display.size.x() as u32, display.size.y() as u32],
     };
-    Ok((frame, facts(&layer.attributes), channels))
+    Ok(Head { frame, facts: facts(layer), texts, words: names(words), others: names(others) })
+}
+
+/// Reads the channels of whole numbers, by name. All channels are in memory for a moment, so [`decode_head`] should have been
+/// asked which there are.
+pub fn decode_words(file: &[u8]) -> Result<Vec<Words>, CannotDecode> {
+    let refuse = |error: exr::error::Error| CannotDecode(error.to_string());
+    refuse_large(file)?;
+    let reader = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
+    let image = reader.all_attributes().from_buffered(Cursor::new(file)).map_err(refuse)?;
+    let words = image.layer_data.channel_data.list.into_iter().filter_map(|channel| {
+        let AnyChannel { name, sample_data: FlatSamples::U32(values), .. } = channel else { return None };
+        Some(Words { name: name.to_string(), values })
+    });
+    Ok(words.collect())
 }
 
 /// Refuses what has too many pixels before any memory is taken for them.

@@ -18,8 +18,8 @@ const MOST_FIXED: f64 = (1u64 << 42) as f64;
 /// Units of the fixed point in a filter weight of 1: `MOST_SAMPLES` weights of less than 8 fit an `i64`.
 const WEIGHT_SCALE: f64 = (1u64 << 40) as f64;
 
-/// Greatest magnitude of a filter weight in these units.
-const MOST_WEIGHT: u64 = 8 << 40;
+/// Greatest magnitude of a filter weight in these units: `MOST_SAMPLES` times it fits an `i64`.
+const MOST_WEIGHT: u64 = (8 << 40) - 1;
 
 /// Numbers of 32 bits that hold the sums of a pixel: see [`Pixel::words`].
 pub const WORDS: usize = 15;

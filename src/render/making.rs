@@ -12,6 +12,8 @@ use std::time::{Duration, Instant};
 
 /// How long a step may take: work that is not yet in the film is lost where it is cancelled.
 const STEP: Duration = Duration::from_millis(500);
+/// Passes over the picture for which there is to be time, where it is limited.
+const LAST_PASSES: u64 = 8;
 /// Paths of a first step, after which it is known how long they take.
 const FIRST_PATHS: u64 = 1 << 19;
 
@@ -23,6 +25,8 @@ pub struct Making {
     even: Option<Film>,
     /// The number of each pixel's first sample.
     start: u32,
+    /// How what is shown was when it was last judged where samples go, if it was.
+    judged: Option<Shown>,
     /// Those of the film's window, row by row.
     blocks: Vec<Block>,
 }
@@ -55,7 +59,7 @@ impl Making {
     /// The same of a share of the samples, from this one on.
     pub fn from_sample(window: Window, scale: f64, start: u32) -> Making {
         let blocks = window.tiles(BLOCK).map(|window| Block { window, samples: 0, aim: 0 }).collect();
-        Making { film: Film::new(window, scale), even: None, start, blocks }
+        Making { film: Film::new(window, scale), even: None, start, judged: None, blocks }
     }
 
     /// The same of a picture without samples, with the sums of every other sample kept apart too: two pictures of the same light
@@ -65,9 +69,9 @@ impl Making {
         Making { even: Some(even), ..self }
     }
 
-    /// One that was put aside: its film, the number of its first sample, and what each pixel was on the way to, row by row.
-    /// None where pixels of a block differ, or have more than they were to have.
-    pub fn resumed(film: Film, start: u32, aims: &[u32]) -> Option<Making> {
+    /// One that was put aside: its film, the number of its first sample, what each pixel was on the way to, row by row, and by
+    /// what it was judged. None where pixels of a block differ, or have more than they were to have.
+    pub fn resumed(film: Film, start: u32, aims: &[u32], judged: Option<Shown>) -> Option<Making> {
         let window = film.window();
         let block = |window_of: Window| {
             let mut pixels = (window_of.y..window_of.y + window_of.height)
@@ -79,7 +83,7 @@ impl Making {
             Some(Block { window: window_of, samples, aim })
         };
         let blocks = window.tiles(BLOCK).map(block).collect::<Option<Vec<Block>>>()?;
-        Some(Making { film, even: None, start, blocks })
+        Some(Making { film, even: None, start, judged, blocks })
     }
 
     /// Its sums.
@@ -108,6 +112,11 @@ impl Making {
     /// The number of each pixel's first sample.
     pub fn start(&self) -> u32 {
         self.start
+    }
+
+    /// How the picture was to be shown when a noise target last decided where samples go; none where none did.
+    pub fn judged(&self) -> Option<Shown> {
+        self.judged
     }
 
     /// How many samples each pixel is to have, row by row.
@@ -152,14 +161,14 @@ impl Making {
         self.blocks.iter().map(|block| block.window.pixels() as u64 * missing(block)).sum()
     }
 
-    /// The next samples to take, about so many at most; none where every block has what it is to have.
-    fn next(&self, paths: u64) -> Option<Step> {
+    /// The next samples to take, about so many paths and so many samples a pixel at most; none where every block has what it is to have.
+    fn next(&self, paths: u64, pass: u32) -> Option<Step> {
         let open = || self.blocks.iter().enumerate().filter(|(_, block)| block.samples < block.aim);
         let from = open().map(|(_, block)| block.samples).min()?;
         let alike = || open().filter(|(_, block)| block.samples == from);
         // Blocks that are to have fewer than others are done first.
         let aim = alike().map(|(_, block)| block.aim).min()?;
-        let to = aim.min(from + PASS);
+        let to = aim.min(from + pass.clamp(1, PASS));
         let (mut count, mut blocks, mut windows) = (0, vec![], vec![]);
         for (index, block) in alike() {
             count += block.window.pixels() as u64 * u64::from(to - from);
@@ -200,6 +209,7 @@ impl Making {
             self.blocks.iter_mut().filter(|block| block.samples == most).for_each(|block| block.aim = goal);
             return None;
         }
+        self.judged = Some(shown);
         let noisy = noisy(&self.film, shown, wanted);
         if !noisy.contains(&true) {
             return Some(Limit::Noise);
@@ -212,6 +222,21 @@ impl Making {
             block.aim = if noisy { goal } else { block.samples };
         }
         None
+    }
+
+    /// The same on the way: aims for no more samples than so many paths give, or than some pixels have already, for all that are
+    /// going on are to get as many.
+    fn slow_down(&mut self, paths: u64) {
+        let open = || self.blocks.iter().filter(|block| block.samples < block.aim);
+        let goal = open().map(|block| block.aim).max().unwrap_or(0);
+        // Those of the rung that are done with it.
+        let [_, most] = self.samples();
+        let (mut low, mut high) = (most.min(goal), goal);
+        while low < high {
+            let middle = low + (high - low).div_ceil(2);
+            if self.paths_to(middle) <= paths { low = middle } else { high = middle - 1 }
+        }
+        self.blocks.iter_mut().for_each(|block| block.aim = block.aim.min(low.max(block.samples)));
     }
 
     /// Aims for no more samples than so many paths give, or says that not even one more fits. Where it is not known how many
@@ -313,7 +338,14 @@ impl Tracer<'_> {
                 }
             }
             control.plan(making.paths_to(u32::MAX));
-            while let Some(step) = making.next(pace.fit(STEP).unwrap_or(FIRST_PATHS)) {
+            let left = |pace: &Pace| limits.time.map(|time| time.saturating_sub(pace.elapsed(control)));
+            let pixels = making.film.window().pixels().max(1) as u64;
+            loop {
+                // What is begun with some pixels is to be ended with the others, so there are short passes where time is.
+                let fits = left(&pace).and_then(|left| pace.fit(left));
+                let pass =
+                    fits.map_or(PASS, |paths| (paths / (LAST_PASSES * pixels)).min(u64::from(PASS)) as u32);
+                let Some(step) = making.next(pace.fit(STEP).unwrap_or(FIRST_PATHS), pass) else { break };
                 let start = pace.elapsed(control);
                 let sums = Sums { film: &mut making.film, even: making.even.as_mut() };
                 self.trace_step(sums, &step.windows, step.samples.clone(), control)?;
@@ -322,6 +354,9 @@ impl Tracer<'_> {
                 let time = pace.elapsed(control).saturating_sub(start);
                 pace.took(pixels as u64 * step.samples.len() as u64, time);
                 between(making);
+                if let Some(paths) = left(&pace).and_then(|left| pace.fit(left)) {
+                    making.slow_down(paths);
+                }
             }
         }
     }
@@ -337,7 +372,7 @@ mod tests {
     /// Takes all steps of at most so many paths, without tracing, and counts how often each pixel got each sample.
     fn all_steps(making: &mut Making, paths: u64, counts: &mut [Vec<u32>]) {
         let window = making.film.window();
-        while let Some(step) = making.next(paths) {
+        while let Some(step) = making.next(paths, PASS) {
             for block in &step.windows {
                 for (x, y) in (block.y..block.y + block.height)
                     .flat_map(|y| (block.x..block.x + block.width).map(move |x| (x, y)))
@@ -386,16 +421,40 @@ mod tests {
     }
 
     #[test]
+    fn on_the_way_a_slow_machine_gets_fewer_samples_and_all_pixels_as_many() {
+        // Of 9 blocks of 256 pixels.
+        let window = Window::whole([48, 48]);
+        let limits = Limits { time: Some(Duration::from_secs(1)), ..Limits::from(Target::Samples(100)) };
+        let mut making = Making::new(window, 1.0);
+        assert_eq!(making.go_on(&limits, SHOWN), None);
+        let step = making.next(4 * 256 * 10, 10).expect("nothing is done yet");
+        assert_eq!((step.windows.len(), step.samples.clone()), (4, 0..10));
+        making.taken(&step);
+        making.slow_down(u64::MAX);
+        assert_eq!(making.paths_to(u32::MAX), 256 * (9 * 100 - 4 * 10));
+        making.slow_down(256 * (9 * 30 - 4 * 10) + 1);
+        assert_eq!(making.paths_to(u32::MAX), 256 * (9 * 30 - 4 * 10));
+        // No time at all is left: the others get what these have.
+        making.slow_down(0);
+        assert_eq!(making.paths_to(u32::MAX), 256 * 5 * 10);
+        let mut counts = vec![vec![0; 100]; window.pixels()];
+        all_steps(&mut making, u64::MAX, &mut counts);
+        assert_eq!(making.samples(), [10; 2]);
+        assert_eq!(making.go_on(&limits, SHOWN), None);
+        assert_eq!(making.cut_short(Some(0)), Some(Limit::Time));
+    }
+
+    #[test]
     fn what_was_put_aside_goes_on_where_it_was() {
         let window = Window::whole([40, 20]);
         let limits = Limits::from(Target::Samples(100));
         let mut making = Making::new(window, 1.0);
         assert_eq!(making.go_on(&limits, SHOWN), None);
-        let again = Making::resumed(making.film.clone(), 0, &making.aims());
+        let again = Making::resumed(making.film.clone(), 0, &making.aims(), None);
         assert_eq!(again.as_ref(), Some(&making));
-        assert_eq!(Making::resumed(making.film.clone(), 0, &[5; 3]), None);
+        assert_eq!(Making::resumed(making.film.clone(), 0, &[5; 3], None), None);
         let mut uneven = making.aims();
         uneven[1] = 7;
-        assert_eq!(Making::resumed(making.film.clone(), 0, &uneven), None);
+        assert_eq!(Making::resumed(making.film.clone(), 0, &uneven, None), None);
     }
 }

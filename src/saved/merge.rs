@@ -3,6 +3,7 @@
 use super::{Refused, Saved, Share, Subject, refused};
 use crate::output::Facts;
 use crate::render::Film;
+use crate::scene::Tonemap;
 
 /// A picture of which some shares are there.
 pub struct Merging {
@@ -34,6 +35,9 @@ impl Merging {
         let first = self.names.iter().flatten().next().map_or("", String::as_str);
         if let Some(why) = expected.refuses(&next.subject) {
             return refused(format!("does not go with `{first}`: {why}"));
+        }
+        if let Some(difference) = unlike(&self.facts, &next.facts) {
+            return refused(format!("does not go with `{first}`: it differs in {difference}"));
         }
         if next.making.film().scale() != self.film.scale() {
             return refused(format!("does not go with `{first}`: it has another scale"));
@@ -73,6 +77,20 @@ impl Merging {
     pub fn film(&self) -> &Film {
         &self.film
     }
+}
+
+/// In what a share came about otherwise than the first, such that the picture would depend on which of them is the first.
+fn unlike(first: &Facts, other: &Facts) -> Option<String> {
+    let stops = |facts: &Facts| facts.stops.map_or("none".to_string(), |stops| stops.to_string());
+    let curve = |facts: &Facts| facts.tonemap.map_or("none", Tonemap::word);
+    if first.stops != other.stops {
+        return Some(format!("its exposure ({}, not {})", stops(other), stops(first)));
+    }
+    if first.tonemap != other.tonemap {
+        return Some(format!("its tonemap ({}, not {})", curve(other), curve(first)));
+    }
+    let rest = |facts: &Facts| (facts.scene.clone(), facts.seed, facts.software.clone());
+    (rest(first) != rest(other)).then(|| "what it says of its scene".to_string())
 }
 
 /// Which share it is, if it is one and has all its samples.

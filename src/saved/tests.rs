@@ -17,6 +17,8 @@ fn identity() -> Identity {
 
 const WINDOW: Window = Window { x: 4, y: 2, width: 20, height: 10 };
 
+const JUDGED: Option<Shown> = Some(Shown { stops: -0.1, tonemap: Tonemap::Agx });
+
 /// A film of some samples of made-up light.
 fn film(samples: Range<u32>) -> Film {
     let pixel = |index: usize| {
@@ -34,7 +36,7 @@ fn film(samples: Range<u32>) -> Film {
 
 fn saved(share: Option<Share>, samples: Range<u32>, aim: u32) -> Saved {
     let start = samples.start;
-    let making = Making::resumed(film(samples), start, &[aim; 200]).expect("all pixels are alike");
+    let making = Making::resumed(film(samples), start, &[aim; 200], JUDGED).expect("all pixels are alike");
     let facts = Facts { stops: Some(0.5), seed: Some(7), ..Facts::unknown() };
     Saved { subject: Subject { program: "rtc 0".into(), identity: identity(), share }, making, facts }
 }
@@ -81,6 +83,71 @@ fn damaged_files_are_refused() {
     let plain = encode_exr(&picture(&film(0..1), &identity()), &Facts::unknown(), Channels::default());
     let why = Saved::decode(&plain.expect("it can be written")).expect_err("it has no sums");
     assert!(why.to_string().contains("no exact sums"), "{why}");
+}
+
+/// The file with the numbers of one attribute of a box of pixels moved: the left and the right column by so many.
+fn shifted(file: &[u8], attribute: &[u8], by: i32) -> Vec<u8> {
+    let name = [attribute, b"\0box2i\0"].concat();
+    let at = file.windows(name.len()).position(|bytes| bytes == name).expect("it is there") + name.len() + 4;
+    let mut moved = file.to_vec();
+    for column in [at, at + 8] {
+        let bytes = moved[column..].first_chunk_mut::<4>().expect("a number of 32 bits");
+        *bytes = (i32::from_le_bytes(*bytes) + by).to_le_bytes();
+    }
+    moved
+}
+
+#[test]
+fn pixels_elsewhere_than_they_say_are_refused() {
+    let bytes = bytes_of(&saved(Some(share(2)), 4..9, 5));
+    assert!(Saved::decode(&shifted(&bytes, b"dataWindow", 0)).is_ok());
+    for by in [5, -2, -5, 16, 17, i32::MAX / 2] {
+        let why =
+            Saved::decode(&shifted(&bytes, b"dataWindow", by)).expect_err("they are elsewhere").to_string();
+        assert!(["elsewhere", "outside", "no EXR"].iter().any(|said| why.contains(said)), "{by}: {why}");
+    }
+}
+
+#[test]
+fn a_head_is_judged_before_pixels_are_read() {
+    let whole = saved(Some(share(2)), 4..9, 5);
+    let bytes = bytes_of(&whole);
+    let cut = |file: &[u8]| file[..file.len() - 200].to_vec();
+    assert!(Saved::decode(&cut(&bytes)).is_err());
+    let head = Head::decode(&cut(&bytes)).expect("the head is whole");
+    assert_eq!((head.subject, head.facts), (whole.subject.clone(), whole.facts));
+    let sums = || Channels {
+        words: words(&whole.making),
+        texts: whole.subject.texts(&whole.making),
+        ..Channels::default()
+    };
+    let refuses = |channels: Channels, reason: &str| {
+        let shown = picture(whole.making.film(), &whole.subject.identity);
+        let file = encode_exr(&shown, &Facts::unknown(), channels).expect("it can be written");
+        let why = Saved::decode(&cut(&file)).expect_err("it holds other things").to_string();
+        assert!(why.contains(reason), "{why}");
+    };
+    refuses(Channels { texts: vec![], ..sums() }, "no exact sums");
+    let plane = crate::output::Plane { name: "Z".into(), values: vec![0.0; 200] };
+    refuses(Channels { planes: vec![plane], ..sums() }, "other channels");
+    let more = Words { name: "sums.more".into(), values: vec![0; 200] };
+    refuses(Channels { words: [sums().words, vec![more]].concat(), ..sums() }, "other channels");
+    refuses(Channels { words: sums().words.split_off(1), ..sums() }, "other channels");
+}
+
+#[test]
+fn weights_of_all_samples_fit_their_sum() {
+    let mut words = [0; WORDS];
+    words[WORDS - 1] = MOST_SAMPLES;
+    // The upper half of the weights of what is covered.
+    words[WORDS - 4] = 1 << 31;
+    assert_eq!(Pixel::from_words(words), None, "the least number there is");
+    // Half of the samples with the most weight, twice.
+    (words[WORDS - 4], words[WORDS - 1]) = (0x3fff_ffff, MOST_SAMPLES / 2);
+    let half = Pixel::from_words(words).expect("so much can be");
+    let mut sum = half;
+    sum.merge(&half);
+    assert_eq!(sum.samples(), MOST_SAMPLES);
 }
 
 #[test]
@@ -140,6 +207,16 @@ fn what_does_not_go_together_is_named() {
         add(saved(Some(five), five.range(), 4))
             .contains("its share (2/5 of 18 samples, not 2/4 of 18 samples)")
     );
+    let developed = |change: &dyn Fn(&mut Facts)| {
+        let mut other = saved(Some(share(2)), 4..9, 5);
+        change(&mut other.facts);
+        other
+    };
+    let why = add(developed(&|facts| facts.stops = Some(4.0)));
+    assert_eq!(why, "does not go with `first`: it differs in its exposure (4, not 0.5)");
+    let why = add(developed(&|facts| facts.tonemap = Some(Tonemap::Agx)));
+    assert_eq!(why, "does not go with `first`: it differs in its tonemap (agx, not none)");
+    assert!(add(developed(&|facts| facts.scene = Some("other".into()))).contains("says of its scene"));
     let mut other = saved(Some(share(2)), 4..9, 5);
     other.subject.program = "rtc 99".into();
     assert!(add(other).contains("made by `rtc 99`, and this is rtc 0"));

@@ -62,6 +62,12 @@ impl Identity {
         [width, height].map(|side| side.parse().unwrap_or(0))
     }
 
+    /// The window of the picture: x, y, width and height; none where it is no such thing.
+    pub fn crop(&self) -> Option<[u32; 4]> {
+        let numbers: Option<Vec<u32>> = self.value("crop").split(',').map(|text| text.parse().ok()).collect();
+        numbers?.try_into().ok()
+    }
+
     /// Whether what nothing covers is transparent.
     pub fn is_transparent(&self) -> bool {
         self.value("background") == Background::Transparent.word()

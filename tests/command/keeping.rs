@@ -47,6 +47,25 @@ fn shares_put_together_are_the_picture_of_one_machine() {
     desk.run("merge part1.exr -o no.exr").expect(2, &["shares 2, 3 of 3 are missing"]);
     desk.run("merge --partial part1.exr part3.exr -o look.png")
         .expect(0, &["share 2 of 3 is missing", "7 samples"]);
+    build(&desk, "--samples 10 --shard 1/2 -o part1.exr")
+        .expect(2, &["`part1.exr` is share 1 of 3, and would be replaced by share 1 of 2", "--shard 1/3"]);
+    build(&desk, "--samples 10 --shard 1/3 -o part1.exr").expect(0, &[]);
+    build(&desk, "--samples 10 --shard 1/2 -o one.exr -o half.exr").expect(0, &[]);
+    build(&desk, "--samples 10 -o one.exr").expect(0, &[]);
+    // What lacks samples says so, and what has all of them is like any picture.
+    desk.run("merge --partial part1.exr part3.exr -o some.exr -q").expect(0, &[]);
+    desk.run("merge --partial part2.exr -o look.png").expect(0, &["of 1 share\n"]);
+    let says = |file: &str| desk.get(file).windows(10).any(|bytes| bytes == b"rtc.shares");
+    assert_eq!((says("some.exr"), says("all.exr")), (true, false));
+    for (flag, said) in
+        [("--exposure 4", "its exposure (4, not "), ("--tonemap none", "its tonemap (none, not ")]
+    {
+        build(&desk, &format!("--samples 10 --shard 2/3 {flag} -o foreign.exr")).expect(0, &[]);
+        for order in ["part1.exr foreign.exr part3.exr", "part3.exr part1.exr foreign.exr"] {
+            desk.run(&format!("merge {order} -o no.exr"))
+                .expect(2, &["`foreign.exr` does not go with", said]);
+        }
+    }
     fs::copy(desk.path("part2.exr"), desk.path("again.exr")).unwrap();
     desk.run("merge part1.exr part2.exr again.exr -o no.exr")
         .expect(2, &["`again.exr` is share 2 of 3, and so is `part2.exr`"]);
@@ -85,6 +104,24 @@ fn a_share_needs_a_number_of_samples_and_an_exr() {
     by_slurm("2", "2", "2").expect(0, &[]);
     desk.run("merge a.exr -o b.exr").expect(2, &["share 1 of 2 is missing"]);
     by_slurm("2", "1", "2").expect(2, &["auto/N"]);
+}
+
+#[test]
+fn a_noise_target_goes_on_only_as_it_was_to_be_shown() {
+    let desk = desk();
+    desk.put("room.rt", CALM);
+    let noise = |rest: &str| {
+        build(&desk, &format!("--noise 2% --samples 512 --min-samples 4 -o a.exr --checkpoint {rest}"))
+    };
+    noise("--exposure 2").expect(0, &[]);
+    noise("--exposure 1").expect(2, &["another exposure (2, not 1)", "--resume=never"]);
+    noise("--exposure 2 --tonemap none").expect(2, &["another tonemap (", "not none)"]);
+    noise("--exposure 2").expect(0, &[]);
+    // A number of samples does not ask how they are shown.
+    build(&desk, "--samples 600 --exposure 1 -o a.exr --checkpoint").expect(0, &[]);
+    build(&desk, "--samples 600 --exposure 1 -o b.exr").expect(0, &[]);
+    assert_same(&desk.path("a.exr"), &desk.path("b.exr"));
+    noise("--exposure 1").expect(2, &["another exposure (2, not 1)"]);
 }
 
 #[test]

@@ -75,8 +75,8 @@ fn path(targets: &[Target]) -> Option<PathBuf> {
 pub fn find(subject: &Subject, targets: &[Target]) -> Result<Found, Problem> {
     let Some(path) = path(targets).filter(|path| path.exists()) else { return Ok(Found::Nothing) };
     let text = String::from_utf8(input::read_plain(&path, LARGEST)?).unwrap_or_default();
-    // Names of files may hold anything, values hold no colons.
-    let recorded: BTreeMap<&str, &str> = text.lines().filter_map(|line| line.rsplit_once(": ")).collect();
+    // Values may hold anything, names no colons.
+    let recorded: BTreeMap<&str, &str> = text.lines().filter_map(|line| line.split_once(": ")).collect();
     let mut different = vec![];
     for (name, value) in subject {
         match recorded.get(name.as_str()) {
