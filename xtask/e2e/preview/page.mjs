@@ -60,9 +60,9 @@ await check("a slow page slows nobody and is heard", large, async ({ url }, scen
   };
   const withSlow = await rounds();
   slow[0].say({ type: "pause", on: true });
-  await page.waitForSelector("#state[data-state=paused]", { timeout: 5000 });
+  await page.waitForSelector("#state[data-state=paused]", { timeout: 30_000 });
   slow[1].say({ type: "pause", on: false });
-  await page.waitForSelector("#state[data-state=rendering]", { timeout: 5000 });
+  await page.waitForSelector("#state[data-state=rendering]", { timeout: 30_000 });
   slow.forEach(({ end }) => end());
   const without = await rounds();
   assert(withSlow < 1.5 * without + 300, `5 saves took ${Math.round(withSlow)} ms beside slow pages, ${Math.round(without)} ms without`);

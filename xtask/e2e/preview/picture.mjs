@@ -52,7 +52,7 @@ await check("nothing flashes", {}, async ({ url }, scene) => {
   assert(zoom !== "fit", "it is zoomed");
   await page.reload();
   await page.waitForSelector('#stage[data-step="1"]');
-  await until("the zoom survives a reload", async () => (await page.textContent("#zoom-fit")) === zoom, 5000);
+  await until("the zoom survives a reload", async () => (await page.textContent("#zoom-fit")) === zoom, 30_000);
   equal(await page.textContent("#exposure-text"), exposure, "the exposure survives a reload");
 });
 

@@ -51,7 +51,7 @@ await check("a pixel tells what the file holds", {}, async ({ url }, scene) => {
   await until("what stands there is lit up", async () => String(await shown(page)) !== before, 20000);
   await keep(page, "why");
   await page.locator("#why .uses .place").first().blur();
-  await until("it is as it was", async () => String(await shown(page)) === before, 5000);
+  await until("it is as it was", async () => String(await shown(page)) === before, 30_000);
 });
 
 /// How many pixels are darkened, and whether one of them is this.
@@ -70,7 +70,7 @@ await check("a place of the text is found in the picture", {}, async ({ url }, s
     await page.keyboard.press("/");
     await page.keyboard.type(text);
     await page.keyboard.press("Enter");
-    await until(`\`${text}\` is answered`, async () => (await page.textContent("#find-said")) !== before, 5000);
+    await until(`\`${text}\` is answered`, async () => (await page.textContent("#find-said")) !== before, 30_000);
     await page.locator("#stage").focus();
     return { said: await page.textContent("#find-said"), ...darkened(plain, await pixels(page, SIZE)) };
   };
@@ -102,12 +102,12 @@ await check("a place of the text is found in the picture", {}, async ({ url }, s
   const last = await generation(page);
   save(scene, SCENE.replace("50cm", "60cm"));
   await newer(page, last);
-  await until("more pixels show a larger ball", async () => number({ said: await page.textContent("#find-said") }) > number(whole), 5000);
+  await until("more pixels show a larger ball", async () => number({ said: await page.textContent("#find-said") }) > number(whole), 30_000);
   const light = await open(browser, url, { colorScheme: "light" });
   await light.keyboard.press("/");
   await light.keyboard.type("4");
   await light.keyboard.press("Enter");
-  await until("it is answered", async () => (await light.textContent("#find-said")).includes("point"), 5000);
+  await until("it is answered", async () => (await light.textContent("#find-said")).includes("point"), 30_000);
   await keep(light, "find-light");
   equal(page.problems.join("; "), "", "what the console says");
 });
@@ -118,7 +118,7 @@ await check("a click opens the editor at the line", editor, async ({ url }, scen
   const page = await open(browser, url);
   save(scene, SCENE.replace("radius: size", "radius: 8deg"));
   await page.locator("#messages-text .place").first().click();
-  await until("the command has run", () => existsSync(`${opened}-7-41`), 5000);
+  await until("the command has run", () => existsSync(`${opened}-7-41`), 30_000);
 });
 
 await check("params are set and written back", {}, async ({ url }, scene) => {
@@ -131,10 +131,10 @@ await check("params are set and written back", {}, async ({ url }, scene) => {
   await page.locator(".param.is-set").waitFor();
   await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
   await page.click("#copy-set");
-  await until("the flags are copied", async () => (await page.evaluate(() => navigator.clipboard.readText())) === "--set 'size=75cm'", 5000);
+  await until("the flags are copied", async () => (await page.evaluate(() => navigator.clipboard.readText())) === "--set 'size=75cm'", 30_000);
   await keep(page, "params");
   await page.getByRole("button", { name: "Write" }).click();
-  await until("the file says so", () => load(scene, "utf8").includes("param size: length = 75cm in 10cm to 1m"), 5000);
+  await until("the file says so", () => load(scene, "utf8").includes("param size: length = 75cm in 10cm to 1m"), 30_000);
   equal(page.problems.join("; "), "", "what the console says");
 });
 
@@ -162,5 +162,5 @@ await check("a value whose param is gone can be dropped", {}, async ({ url }) =>
   await keep(page, "param-gone");
   assert(!(await row.getByRole("button", { name: "Write" }).isVisible()), "there is no place to write it to");
   await row.getByRole("button", { name: "Reset" }).click();
-  await until("it is dropped", () => said.some(({ type, name, value }) => type === "set" && name === "height" && value === ""), 5000);
+  await until("it is dropped", () => said.some(({ type, name, value }) => type === "set" && name === "height" && value === ""), 30_000);
 });

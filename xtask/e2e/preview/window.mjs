@@ -27,7 +27,7 @@ await check("a window is spanned by keys and traced first", long, async ({ url }
   await keep(page, "spanning");
   await press(page, "Enter");
   const heard = await eavesdrop(page);
-  await until("the window is known", async () => String((await heard()).status.crop) === "129,128,51,33", 5000);
+  await until("the window is known", async () => String((await heard()).status.crop) === "129,128,51,33", 30_000);
   const settled = async () => (await heard()).pictures.length;
   await until("no picture is under way", async () => {
     const before = await settled();
@@ -46,7 +46,7 @@ await check("a window is spanned by keys and traced first", long, async ({ url }
   assert(pictures[ahead].samples[0] < SAMPLES, "the rest has fewer by then");
   await keep(page, "window");
   await press(page, "c");
-  await until("the window is let go of", async () => (await heard()).status.crop === null, 5000);
+  await until("the window is let go of", async () => (await heard()).status.crop === null, 30_000);
   equal(page.problems.join("; "), "", "what the console says");
 });
 
@@ -67,7 +67,7 @@ await check("a window is dragged", {}, async ({ url }) => {
   await press(page, "f");
   await press(page, "c");
   await drag();
-  await until("the window is known", async () => (await heard()).status.crop?.every((side, i) => Math.abs(side - [60, 40, 60, 40][i]) <= 1), 5000);
+  await until("the window is known", async () => (await heard()).status.crop?.every((side, i) => Math.abs(side - [60, 40, 60, 40][i]) <= 1), 30_000);
   equal(await page.getAttribute("#crop", "aria-pressed"), "true", "the button");
 });
 
