@@ -23,10 +23,6 @@ const WAVERING: f64 = 1.6;
 
 /// Renders, compares, prints the table, and judges it.
 pub fn agreement(place: &Place) -> Outcome {
-    run(Command::new("cargo")
-        .args(["build", "--release", "--quiet", "--bin", "rtc"])
-        .current_dir(&place.root))?;
-    let rtc = place.rtc.with_file_name("../release/rtc");
     let folder = place.root.join("tests/references");
     let reference = Floats::read(&folder.join("room.pfm"))?;
     let mut sum = vec![0.0; reference.values.len()];
@@ -35,7 +31,7 @@ pub fn agreement(place: &Place) -> Outcome {
     println!("samples      red    green     blue   relMSE of blocks   median");
     for (seed, samples) in (1..).zip(RENDERS) {
         let picture = place.desk.join(format!("{seed}.pfm"));
-        let mut command = Command::new(&rtc);
+        let mut command = Command::new(&place.rtc);
         command.arg("build").arg(folder.join("room.rt")).arg("--quiet");
         command.args(["--samples", &samples.to_string(), "--seed", &seed.to_string(), "-o"]).arg(&picture);
         run(&mut command)?;
