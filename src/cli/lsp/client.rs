@@ -13,6 +13,8 @@ pub struct Client {
     pub snippets: bool,
     /// Takes edits of several documents with the versions they are of.
     pub document_changes: bool,
+    /// Lets its texts be edited, each in a certain version.
+    pub takes_edits: bool,
     /// Takes symbols as a tree.
     pub symbol_tree: bool,
     /// Shows pictures in hovers.
@@ -45,9 +47,11 @@ impl Client {
         let has = |path: &str, word: &str| {
             at(path).and_then(Value::as_array).is_some_and(|all| all.iter().any(|one| one == word))
         };
+        let document_changes = can("workspace/workspaceEdit/documentChanges");
         Client {
             snippets: can("textDocument/completion/completionItem/snippetSupport"),
-            document_changes: can("workspace/workspaceEdit/documentChanges"),
+            document_changes,
+            takes_edits: document_changes && can("workspace/applyEdit"),
             symbol_tree: can("textDocument/documentSymbol/hierarchicalDocumentSymbolSupport"),
             // The parser of Visual Studio Code and its kin, which draws pictures.
             pictures: at("general/markdown/parser").is_some_and(|parser| parser == "marked"),

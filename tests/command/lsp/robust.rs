@@ -1,8 +1,11 @@
 //! Whatever comes in, the server lives and answers what it can.
 
 use super::super::Desk;
-use super::client::Client;
+use super::client::{Client, PATIENCE};
 use serde_json::{Value, json};
+use std::io::Write;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
 
 const BAD: &str = "sphere { radius: 8deg }\n";
 
@@ -42,6 +45,99 @@ fn an_end_that_was_not_announced_is_a_failure() {
     client.send_bytes(b"Content-Length: 100\r\n\r\n{\"jsonrpc\"");
     client.hang_up();
     assert_eq!(client.code(), Some(1));
+}
+
+#[cfg(unix)]
+#[test]
+fn the_server_ends_with_the_client() {
+    let desk = Desk::new();
+    let mut editor = Command::new("sleep").arg("1000").spawn().unwrap();
+    let params = json!({ "processId": editor.id(), "capabilities": {} });
+    let mut client = Client::silent(&desk).agreed(params.clone());
+    client.open("a.rt", BAD);
+    let said = client.diagnostics("a.rt", Some(1));
+    let page = said[0]["codeDescription"]["href"].as_str().unwrap().strip_prefix("file://").unwrap();
+    let folder = std::path::Path::new(page).parent().unwrap();
+    assert!(folder.exists());
+    // Another one knows whose folder it is.
+    let mut other = Client::silent(&desk).agreed(params.clone());
+    other.open("a.rt", BAD);
+    other.diagnostics("a.rt", Some(1));
+    assert!(folder.exists());
+    editor.kill().unwrap();
+    editor.wait().unwrap();
+    // Nobody has hung up.
+    assert_eq!((client.code(), other.code()), (Some(1), Some(1)));
+    assert!(!folder.exists());
+    // A number that is of no process here may be of one elsewhere.
+    for process in
+        [params["processId"].clone(), json!(null), json!(-1), json!(0), json!(u64::MAX), json!("x")]
+    {
+        let mut client = Client::silent(&desk).agreed(json!({ "processId": process, "capabilities": {} }));
+        std::thread::sleep(Duration::from_millis(50));
+        lives(&mut client);
+        assert_eq!(client.end(), Some(0));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn who_holds_the_pipes_of_a_client_that_is_gone_does_not_keep_the_server() {
+    let desk = Desk::new();
+    let mut editor = Command::new("sleep").arg("1000").spawn().unwrap();
+    let mut server = desk.command("lsp").stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    let mut input = server.stdin.take().unwrap();
+    let process = json!({ "processId": editor.id(), "capabilities": {} });
+    let mut send = move |id: i32, method: &str, params: &Value| {
+        let body = json!({ "jsonrpc": "2.0", "id": id, "method": method, "params": params }).to_string();
+        write!(input, "Content-Length: {}\r\n\r\n{body}", body.len()).is_ok()
+    };
+    // More answers than pipes and queues hold, which nobody reads.
+    let floods = std::thread::spawn(move || {
+        assert!(send(0, "initialize", &process));
+        (1..).find(|id| !send(*id, "none", &Value::Null))
+    });
+    std::thread::sleep(Duration::from_millis(500));
+    editor.kill().unwrap();
+    editor.wait().unwrap();
+    let start = Instant::now();
+    while server.try_wait().unwrap().is_none() {
+        assert!(start.elapsed() < PATIENCE, "it does not end");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    floods.join().unwrap();
+}
+
+#[cfg(unix)]
+#[test]
+fn what_a_server_left_that_was_killed_is_removed() {
+    let desk = Desk::new();
+    let place = desk.path("tmp");
+    std::fs::create_dir(&place).unwrap();
+    let folders = || -> Vec<_> {
+        let entries = std::fs::read_dir(&place).unwrap();
+        entries.map(|entry| entry.unwrap().path()).collect()
+    };
+    let serve = || {
+        let mut client = Client::in_place(&desk, &place).agreed(json!({ "capabilities": {} }));
+        client.open("a.rt", BAD);
+        client.diagnostics("a.rt", Some(1));
+        client
+    };
+    let first = serve();
+    assert_eq!(folders().len(), 1);
+    let left = folders();
+    // Killed.
+    drop(first);
+    assert_eq!(folders(), left);
+    // What is of somebody else stays.
+    std::fs::create_dir(place.join("rtc-codes-strange")).unwrap();
+    std::fs::write(place.join("rtc-codes-file"), "").unwrap();
+    let second = serve();
+    assert!(!left[0].exists());
+    assert_eq!(folders().len(), 3);
+    assert_eq!(second.end(), Some(0));
+    assert_eq!(folders().len(), 2);
 }
 
 #[test]
