@@ -100,7 +100,7 @@ fn an_editor_that_refuses_is_heard() {
         (3, json!({ "result": null }), "it: it does not say why"),
         (4, json!({ "error": error }), "it: no"),
         // It says so, and does something else.
-        (5, json!({ "result": { "applied": true } }), "its text is another: try it again"),
+        (5, json!({ "result": { "applied": true } }), "the text says something else: try it again"),
     ] {
         write(&mut page, id);
         let mut reply = reply;
