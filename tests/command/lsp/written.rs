@@ -139,9 +139,16 @@ fn what_is_closed_is_shown_and_written_as_it_is_saved() {
     let desk = Desk::new();
     desk.put("scene.rt", &format!("{SCENE}camera wide {{ from: (0, 1, 6)m, look: (0, 0, 0)m }}\n"));
     let mut client = client(&desk, true);
-    let arguments = json!([{ "uri": client.uri("scene.rt"), "camera": "wide" }]);
-    let params = json!({ "command": "rtc.startPreview", "arguments": arguments });
-    let url = client.ask("workspace/executeCommand", params).unwrap()["url"].as_str().unwrap().to_string();
+    let begin = |client: &mut Client, name: &str, camera: &str| {
+        let arguments = json!([{ "uri": client.uri(name), "camera": camera }]);
+        let params = json!({ "command": "rtc.startPreview", "arguments": arguments });
+        client.ask("workspace/executeCommand", params)
+    };
+    let none = begin(&mut client, "scene.rt", "tall").unwrap_err();
+    assert_eq!(none["message"], "no camera is called `tall`: there is `wide`");
+    let none = begin(&mut client, "nothing.rt", "wide").unwrap_err();
+    assert!(none["message"].as_str().unwrap().starts_with("there is no file"), "{none}");
+    let url = begin(&mut client, "scene.rt", "wide").unwrap()["url"].as_str().unwrap().to_string();
     let mut page = set(&url, "2m");
     write(&mut page, 1);
     assert_eq!(told(&mut page, 1)["ok"], true);
