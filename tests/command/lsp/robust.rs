@@ -133,11 +133,16 @@ fn what_a_server_left_that_was_killed_is_removed() {
     // What is of somebody else stays.
     std::fs::create_dir(place.join("rtc-codes-strange")).unwrap();
     std::fs::write(place.join("rtc-codes-file"), "").unwrap();
+    let elsewhere = desk.path("elsewhere");
+    std::fs::create_dir(&elsewhere).unwrap();
+    std::fs::write(elsewhere.join("lock"), "").unwrap();
+    std::os::unix::fs::symlink(&elsewhere, place.join("rtc-codes-link")).unwrap();
     let second = serve();
     assert!(!left[0].exists());
-    assert_eq!(folders().len(), 3);
+    assert_eq!(folders().len(), 4);
     assert_eq!(second.end(), Some(0));
-    assert_eq!(folders().len(), 2);
+    assert_eq!(folders().len(), 3);
+    assert!(elsewhere.join("lock").exists());
 }
 
 #[test]
@@ -321,6 +326,29 @@ fn a_long_document_is_edited_within_bounds() {
     assert!(!codes.is_empty());
     #[cfg(target_os = "linux")]
     assert!(client.memory() < 2500 << 20, "{} MB", client.memory() >> 20);
+    assert_eq!(client.end(), Some(0));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn thousands_of_edits_take_no_more_memory_than_hundreds() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    client.open("a.rt", &much());
+    let edit = |client: &mut Client, versions: std::ops::Range<i32>| {
+        let last = versions.end - 1;
+        for version in versions {
+            let (end, text) = if version % 2 == 0 { (0, "x") } else { (1, "") };
+            let at = |character: u32| json!({ "line": version / 2 % 3000, "character": character });
+            let change = json!([{ "range": { "start": at(0), "end": at(end) }, "text": text }]);
+            client.change("a.rt", version, change);
+        }
+        assert_eq!(client.codes("a.rt", Some(last)), Vec::<String>::new());
+        client.memory()
+    };
+    let before = edit(&mut client, 2..502);
+    let after = edit(&mut client, 502..20_502);
+    assert!(after < before + (32 << 20), "{} MB, then {} MB", before >> 20, after >> 20);
     assert_eq!(client.end(), Some(0));
 }
 

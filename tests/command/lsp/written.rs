@@ -137,7 +137,7 @@ fn an_editor_that_takes_no_edits_keeps_its_text() {
 #[test]
 fn what_is_closed_is_shown_and_written_as_it_is_saved() {
     let desk = Desk::new();
-    desk.put("scene.rt", &format!("{SCENE}camera wide {{ from: (0, 1, 6)m, look: (0, 0, 0)m }}\n"));
+    desk.put("scene.rt", format!("{SCENE}camera wide {{ from: (0, 1, 6)m, look: (0, 0, 0)m }}\n"));
     let mut client = client(&desk, true);
     let begin = |client: &mut Client, name: &str, camera: &str| {
         let arguments = json!([{ "uri": client.uri(name), "camera": camera }]);
