@@ -3,6 +3,8 @@
 mod answers;
 mod client;
 mod edits;
+mod page;
 mod preview;
 mod robust;
 mod session;
+mod written;

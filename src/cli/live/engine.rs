@@ -4,13 +4,12 @@ use super::desk::{Desk, Job, Question};
 use super::hub::{Hub, Param, Reply, Request, Said, State};
 use super::reader::{Reader, Seen};
 use super::said::{said, unreadable};
+use super::store::{CHANGING, Store};
 use super::watcher::Watcher;
 use crate::cli::args::Watch;
-use crate::cli::interrupt::Interrupt;
 use crate::cli::scene::Loaded;
-use crate::cli::target::Aside;
 use crate::cli::terminal::Terminal;
-use crate::cli::{Exit, Problem, plain};
+use crate::cli::{Exit, Problem};
 use rt_lang::change;
 use rt_lang::diagnostic::any_errors;
 use rt_lang::render::Window;
@@ -22,10 +21,26 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// What is said where a picture is asked about before the first.
 const NO_PICTURE: &str = "there is no picture yet";
+
+/// How long a text may take to say what was put there.
+const PATIENCE: Duration = Duration::from_secs(3);
+/// What is said where it does not.
+const NOT_THERE: &str = "it was written, but the text says something else: try it again";
+
+/// A value that was put into the text.
+struct Written {
+    /// What is set.
+    set: String,
+    /// What is to stand in the text.
+    default: String,
+    /// Until when it is waited for.
+    until: Instant,
+    reply: Reply<Result<(), String>>,
+}
 
 /// Reads, compiles, and decides.
 pub struct Engine {
@@ -35,7 +50,7 @@ pub struct Engine {
     watcher: Watcher,
     desk: Arc<Desk>,
     hub: Arc<Hub>,
-    interrupt: Interrupt,
+    store: Box<dyn Store>,
     terminal: Terminal,
     /// What is set, by the command line and by pages.
     set: BTreeMap<String, String>,
@@ -43,6 +58,8 @@ pub struct Engine {
     gone: BTreeSet<String>,
     /// The params that the text has had.
     had: BTreeSet<String>,
+    /// What was put into the text, until it is seen there.
+    written: BTreeMap<String, Written>,
     /// Which of them are new.
     fresh: Vec<String>,
     generation: u64,
@@ -62,7 +79,7 @@ impl Engine {
         watcher: Watcher,
         desk: Arc<Desk>,
         hub: Arc<Hub>,
-        interrupt: Interrupt,
+        store: Box<dyn Store>,
         terminal: Terminal,
     ) -> Engine {
         let scene = arguments.scene.clone();
@@ -78,11 +95,12 @@ impl Engine {
             watcher,
             desk,
             hub,
-            interrupt,
+            store,
             terminal,
             set,
             gone: BTreeSet::new(),
             had: BTreeSet::new(),
+            written: BTreeMap::new(),
             generation: 0,
             job: None,
             said,
@@ -95,12 +113,13 @@ impl Engine {
         self.watcher.follow([self.scene.clone()]);
         self.look(true);
         loop {
-            let mut waiting = match self.again {
+            let wake = self.written.values().map(|written| written.until).chain(self.again).min();
+            let mut waiting = match wake {
                 None => match requests.recv() {
                     Ok(request) => vec![request],
                     Err(_) => return Ok(Exit::Done),
                 },
-                Some(again) => match requests.recv_timeout(again.saturating_duration_since(Instant::now())) {
+                Some(wake) => match requests.recv_timeout(wake.saturating_duration_since(Instant::now())) {
                     Ok(request) => vec![request],
                     Err(RecvTimeoutError::Timeout) => vec![Request::Look],
                     Err(RecvTimeoutError::Disconnected) => return Ok(Exit::Done),
@@ -114,19 +133,23 @@ impl Engine {
                     Request::End => return Ok(Exit::Done),
                     Request::Look => look = true,
                     Request::Set { name, value } => set |= self.set(name, value),
+                    Request::Written { name, default, answer, reply } => {
+                        look |= self.wait_for(name, default, answer, reply);
+                    }
                     other => self.answer(other),
                 }
             }
             if look || set {
-                self.look(set);
+                let settled = self.settle();
+                self.look(set || settled);
             }
         }
     }
 
     fn answer(&mut self, request: Request) {
         match request {
-            Request::End | Request::Look | Request::Set { .. } => {}
-            Request::Write { name, reply } => self.write(&name, reply),
+            Request::End | Request::Look | Request::Set { .. } | Request::Written { .. } => {}
+            Request::Write { name, reply } => self.write(name, reply),
             Request::Crop(window) => self.crop(window),
             Request::Pause(paused) => {
                 self.desk.pause(paused);
@@ -315,25 +338,22 @@ impl Engine {
         });
     }
 
-    /// Writes what is set into the scene.
-    fn write(&mut self, name: &str, reply: Reply<Result<(), String>>) {
-        let written = self.write_default(name);
-        if written.is_ok() {
-            self.set.remove(name);
-            self.look(true);
+    /// Has what is set written into the scene.
+    fn write(&self, name: String, reply: Reply<Result<(), String>>) {
+        match self.with_default(&name) {
+            Err(why) => drop(reply.send(Err(why))),
+            Ok([before, after, default]) => {
+                let hub = self.hub.clone();
+                let done = move |answer| hub.ask(Request::Written { name, default, answer, reply });
+                self.store.replace(&before, &after, Box::new(done));
+            }
         }
-        let _ = reply.send(written);
     }
 
-    fn write_default(&self, name: &str) -> Result<(), String> {
-        const CHANGING: &str =
-            "there are errors, in the scene or in what is set, or it is being written: mend that first";
+    /// The scene, what it is to become where what is set is the default of a param, and that default.
+    fn with_default(&self, name: &str) -> Result<[String; 3], String> {
         let value = self.set.get(name).ok_or_else(|| format!("`{name}` is as the file has it"))?;
-        let read = || {
-            let cannot = |error: &_| format!("cannot read `{}`: {}", self.scene.display(), plain(error));
-            std::fs::read_to_string(&self.scene).map_err(|error| cannot(&error))
-        };
-        let text = read()?;
+        let text = self.store.read()?;
         let compiled = self.job.as_ref().map(|job| &job.loaded.sources.get(job.loaded.id).text);
         if self.said.errors > 0 || compiled != Some(&text) {
             return Err(CHANGING.into());
@@ -342,15 +362,48 @@ impl Engine {
         let (expr, slips) = syntax::parse_expression(SourceId(0), value);
         let value = value.get(expr.span.range()).filter(|_| slips.is_empty()).ok_or(CHANGING)?;
         let default = default_of(&text, name).ok_or_else(|| format!("the scene has no param `{name}`"))?;
-        let new = format!("{}{value}{}", &text[..default.start], &text[default.end..]);
-        let mut aside =
-            Aside::beside(&self.scene, &self.interrupt).map_err(|problem| problem.message.clone())?;
-        aside.write(new.as_bytes()).map_err(|problem| problem.message.clone())?;
-        // Somebody may have saved it meanwhile.
-        if read()? != text {
-            return Err(CHANGING.into());
+        let after = format!("{}{value}{}", &text[..default.start], &text[default.end..]);
+        Ok([text, after, value.into()])
+    }
+
+    /// Passes on why a value was not written, or waits until it is seen in the text; whether to look for it there.
+    fn wait_for(
+        &mut self,
+        name: String,
+        default: String,
+        answer: Result<(), String>,
+        reply: Reply<Result<(), String>>,
+    ) -> bool {
+        let is_written = answer.is_ok();
+        match (answer, self.set.get(&name)) {
+            (Ok(()), Some(set)) => {
+                let (set, until) = (set.clone(), Instant::now() + PATIENCE);
+                self.written.insert(name, Written { set, default, until, reply });
+            }
+            (answer, _) => drop(reply.send(answer)),
         }
-        aside.finish().map_err(|problem| problem.message.clone())
+        is_written
+    }
+
+    /// Lets go of what is set and stands in the text by now, and answers who had it written; whether there was something.
+    fn settle(&mut self) -> bool {
+        if self.written.is_empty() {
+            return false;
+        }
+        let text = self.store.read().unwrap_or_default();
+        let mut settled = false;
+        for (name, written) in std::mem::take(&mut self.written) {
+            if default_of(&text, &name).is_some_and(|at| text[at] == *written.default) {
+                // It may have been set to something else meanwhile.
+                settled |= self.set.get(&name) == Some(&written.set) && self.set.remove(&name).is_some();
+                let _ = written.reply.send(Ok(()));
+            } else if Instant::now() < written.until {
+                self.written.insert(name, written);
+            } else {
+                let _ = written.reply.send(Err(NOT_THERE.into()));
+            }
+        }
+        settled
     }
 }
 

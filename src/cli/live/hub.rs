@@ -259,6 +259,17 @@ pub enum Request {
         /// Why not, if not.
         reply: Reply<Result<(), String>>,
     },
+    /// Whether a value was put into the text, which may be a moment before it is seen there.
+    Written {
+        /// The param.
+        name: String,
+        /// Its new default.
+        default: String,
+        /// Why not, if not.
+        answer: Result<(), String>,
+        /// Where that goes.
+        reply: Reply<Result<(), String>>,
+    },
     /// Traces a window first: left, top, width and height.
     Crop(Option<[u32; 4]>),
     /// Lets paths wait, or go on.

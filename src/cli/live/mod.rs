@@ -15,6 +15,7 @@
 //! | [`painter`], [`work`] | tracing the newest scene, step by step |
 //! | [`mix`] | lamps that became brighter, before they are traced |
 //! | [`answers`], [`lit`] | why a pixel looks as it does, and where a place of the text is seen |
+//! | [`store`] | where the text is kept, for who changes it |
 //! | [`writer`] | pictures to files, in the background |
 //! | [`said`] | what the compiler says, as a page shows it |
 //! | [`hub`] | what everybody may know, and ask |
@@ -32,6 +33,7 @@ mod painter;
 mod reader;
 mod said;
 mod serve;
+pub mod store;
 pub mod watcher;
 mod work;
 mod writer;
@@ -55,6 +57,7 @@ use serve::Wanted;
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
+use store::{Saved, Store};
 use watcher::Watcher;
 use writer::Writer;
 
@@ -74,7 +77,8 @@ pub fn run(arguments: &Watch, terminal: Terminal, interrupt: &Interrupt) -> Resu
     }
     let watcher = follow_files(arguments, &hub)?;
     let reader = Reader::new(&arguments.scene, &arguments.reading, arguments.taking.overrides(), outputs);
-    Engine::new(arguments, reader, watcher, desk, hub, interrupt.clone(), terminal).run(&requests)
+    let store = Box::new(Saved::at(&arguments.scene, interrupt));
+    Engine::new(arguments, reader, watcher, desk, hub, store, terminal).run(&requests)
 }
 
 /// A preview that is served until it is dropped; its threads end soon after.
@@ -104,10 +108,11 @@ impl Live {
     }
 }
 
-/// Serves a scene that is read by `load`, and tells of places that are clicked on.
+/// Serves a scene that is read by `load` and changed in `store`, and tells of places that are clicked on.
 pub fn preview(
     arguments: &Watch,
     load: Load,
+    store: Box<dyn Store>,
     tell: Tell,
     terminal: Terminal,
     interrupt: &Interrupt,
@@ -119,7 +124,7 @@ pub fn preview(
     let watcher = follow_files(arguments, &hub)?;
     let reader =
         Reader::new(&arguments.scene, &arguments.reading, arguments.taking.overrides(), vec![]).by(load);
-    let engine = Engine::new(arguments, reader, watcher, desk, hub, interrupt.clone(), terminal);
+    let engine = Engine::new(arguments, reader, watcher, desk, hub, store, terminal);
     let follow = move || engine.run(&requests);
     let started = std::thread::Builder::new().name("follow".into()).spawn(follow);
     started.map_err(|error| Problem::new(format!("cannot start a thread: {error}")))?;

@@ -13,6 +13,8 @@ pub struct Client {
     pub snippets: bool,
     /// Takes edits of several documents with the versions they are of.
     pub document_changes: bool,
+    /// Lets its texts be edited, each in a certain version.
+    pub takes_edits: bool,
     /// Takes symbols as a tree.
     pub symbol_tree: bool,
     /// Shows pictures in hovers.
@@ -45,9 +47,13 @@ impl Client {
         let has = |path: &str, word: &str| {
             at(path).and_then(Value::as_array).is_some_and(|all| all.iter().any(|one| one == word))
         };
+        // Who makes and moves files takes changes with versions too: the protocol has them in one list.
+        let document_changes = can("workspace/workspaceEdit/documentChanges")
+            || at("workspace/workspaceEdit/resourceOperations").is_some_and(Value::is_array);
         Client {
             snippets: can("textDocument/completion/completionItem/snippetSupport"),
-            document_changes: can("workspace/workspaceEdit/documentChanges"),
+            document_changes,
+            takes_edits: document_changes && can("workspace/applyEdit"),
             symbol_tree: can("textDocument/documentSymbol/hierarchicalDocumentSymbolSupport"),
             // The parser of Visual Studio Code and its kin, which draws pictures.
             pictures: at("general/markdown/parser").is_some_and(|parser| parser == "marked"),
@@ -91,6 +97,20 @@ mod tests {
             "textDocument": {"hover": {"contentFormat": ["plaintext", "markdown", 4]}},
         }});
         assert_eq!(Client::read(&some), Client { progress: true, markdown: true, ..Client::default() });
+    }
+
+    #[test]
+    fn edits_are_of_a_version_where_they_can_be() {
+        for (edits, takes) in [
+            (json!({ "applyEdit": true, "workspaceEdit": { "documentChanges": true } }), true),
+            // As Neovim says it.
+            (json!({ "applyEdit": true, "workspaceEdit": { "resourceOperations": ["create"] } }), true),
+            (json!({ "applyEdit": true, "workspaceEdit": {} }), false),
+            (json!({ "workspaceEdit": { "documentChanges": true } }), false),
+        ] {
+            let client = Client::read(&json!({ "capabilities": { "workspace": edits } }));
+            assert_eq!(client.takes_edits, takes, "{edits}");
+        }
     }
 
     #[test]

@@ -114,6 +114,6 @@ fn make_all(orders: &Receiver<Order>) {
     for order in orders {
         let answer = guarded(|| render::render(&order)).and_then(|answer| answer);
         // Nobody listens at the end.
-        let _ = order.told.send(Told::Answered(order.id, answer));
+        let _ = order.told.send(Told::Answered(order.id, answer, order.cancelled));
     }
 }

@@ -8,6 +8,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`frame`], [`message`], [`transport`] | bytes to messages, whatever the bytes are |
+//! | [`ending`] | the end of the process where nobody brings it about |
 //! | [`server`] | what a message leads to, from `initialize` to `exit` |
 //! | [`client`], [`capabilities`] | what the two sides can do |
 //! | [`document`], [`documents`], [`uri`] | the texts as the client edits them, and their addresses |
@@ -18,8 +19,10 @@
 //! | [`diagnostics`], [`pages`] | what is said of documents, and where it is explained |
 //! | [`edits`] | edits that make one text of another, and of several documents |
 //! | [`commands`], [`render`], [`preview`] | what a person can have done |
+//! | [`buffer`] | the text of a document, for the preview that changes it |
 
 mod analyst;
+mod buffer;
 mod capabilities;
 mod client;
 mod commands;
@@ -27,6 +30,7 @@ mod diagnostics;
 mod document;
 mod documents;
 mod edits;
+mod ending;
 mod frame;
 mod message;
 mod pages;
@@ -55,9 +59,9 @@ pub fn run(arguments: &Lsp, interrupt: &Interrupt) -> Result<Exit, Problem> {
             Problem::new(format!("the root `{}` cannot be used: {}", root.display(), plain(&error)))
         })?),
     };
-    let (connection, writer) = transport::start().map_err(cannot)?;
+    let (connection, writer) = transport::start(interrupt).map_err(cannot)?;
     let exit = Server::new(connection, root, interrupt.clone()).map_err(cannot)?.run();
     // What was sent last is written before the process ends.
-    let _ = writer.join();
+    writer.finish();
     Ok(exit)
 }

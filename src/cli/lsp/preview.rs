@@ -1,8 +1,10 @@
 //! The preview of a document, saved or not, served from this process: it follows what stands in the editor, a click on a
 //! place of the page leads there, and the pixels are lit that show what stands at the cursor.
 
+use super::analyst::Meaning;
+use super::buffer::{Asked as AskedToChange, Buffer};
 use super::commands::{About, Order};
-use super::documents::{Key, place};
+use super::documents::{Kept, Key, place};
 use super::requests::read;
 use super::uri::uri_of;
 use super::view::View;
@@ -11,6 +13,7 @@ use crate::cli::Problem;
 use crate::cli::args::{Arguments, Command, Reading};
 use crate::cli::files::Disk;
 use crate::cli::input::Input;
+use crate::cli::live::store::Saved;
 use crate::cli::live::{self, Live, Opened};
 use crate::cli::scene::{self, Loaded};
 use crate::cli::terminal::Terminal;
@@ -37,6 +40,7 @@ pub type Newest = Arc<Mutex<Arc<View>>>;
 /// The previews that are served, by document and camera.
 pub struct Previews {
     newest: Newest,
+    changes: AskedToChange,
     served: BTreeMap<(Key, Option<String>), Live>,
     /// Of whose document is looked whether it has the camera.
     wanted: BTreeMap<RequestId, Order>,
@@ -45,7 +49,12 @@ pub struct Previews {
 impl Previews {
     /// None yet.
     pub fn new(view: Arc<View>) -> Previews {
-        Previews { newest: Arc::new(Mutex::new(view)), served: BTreeMap::new(), wanted: BTreeMap::new() }
+        Previews {
+            newest: Arc::new(Mutex::new(view)),
+            changes: Arc::default(),
+            served: BTreeMap::new(),
+            wanted: BTreeMap::new(),
+        }
     }
 
     /// Keeps an order until it is known whether there is what it is about, and gives what finds that out.
@@ -63,19 +72,24 @@ impl Previews {
         self.wanted.remove(id)
     }
 
-    /// Serves those of a document no more.
-    pub fn close(&mut self, key: &Key) {
+    /// Serves those of a document no more. The requests that wait for one of it.
+    pub fn close(&mut self, key: &Key) -> Vec<RequestId> {
         self.served.retain(|(document, _), _| document != key);
+        let orders = self.wanted.iter().filter(|(_, order)| order.key == *key);
+        orders.map(|(id, _)| id.clone()).collect()
     }
 
-    /// Serves a preview, or finds the one that is served, and gives its address.
-    pub fn start(&mut self, order: &Order) -> Answer<String> {
-        let Order { key, about, view, told, interrupt, .. } = order;
+    /// Serves a preview, or finds the one that is served, and gives its address. What is open may have changed since the order.
+    pub fn start(&mut self, order: &Order, view: &Arc<View>) -> Answer<String> {
+        let Order { key, about, told, interrupt, .. } = order;
         let path =
             key.path().ok_or_else(|| Failure::plain("save it first: what it reads is found from there"))?;
         let served = (key.clone(), about.camera.clone());
         if let Some(live) = self.served.get(&served) {
             return Ok(live.url.clone());
+        }
+        if view.documents.get(key).is_none() && !path.is_file() {
+            return Err(Failure::plain(format!("there is no file `{}`", path.display())));
         }
         if self.served.len() >= MOST {
             return Err(Failure::plain(format!("{MOST} previews are served already")));
@@ -85,10 +99,17 @@ impl Previews {
         let watch = flags(path, about.camera.as_deref())?;
         let (newest, of) = (self.newest.clone(), key.clone());
         let load = move |reading: &Reading, overrides: &Overrides| load(&newest, &of, reading, overrides);
+        let store = Buffer {
+            key: key.clone(),
+            saved: Saved::at(path, interrupt),
+            newest: self.newest.clone(),
+            asked: self.changes.clone(),
+            told: told.clone(),
+        };
         let (newest, told) = (self.newest.clone(), told.clone());
         let show = move |opened: Opened| show(&newest, &told, &opened);
-        let live = live::preview(&watch, Box::new(load), Box::new(show), Terminal::silent(), interrupt)
-            .map_err(wrong)?;
+        let (load, store, show) = (Box::new(load), Box::new(store), Box::new(show));
+        let live = live::preview(&watch, load, store, show, Terminal::silent(), interrupt).map_err(wrong)?;
         let url = live.url.clone();
         self.served.insert(served, live);
         Ok(url)
@@ -121,10 +142,13 @@ impl Previews {
 /// Refuses a camera that a document does not have, and does nothing else.
 fn has_camera(asked: &mut Asked, params: Value) -> Answer<Value> {
     let About { uri, camera } = read(params)?;
-    // Of a text with errors it is not known, and one that is not open is looked at as it is shown.
-    let (Some(camera), Some(Ok(meaning))) = (camera, asked.meaning_of(&Key::of(&uri))) else {
-        return Ok(Value::Null);
+    let key = Key::of(&uri);
+    let meaning = match asked.meaning_of(&key) {
+        Some(meaning) => meaning.ok(),
+        None => Meaning::find(asked.view, &key, &|| asked.is_cancelled()).map(Arc::new),
     };
+    // Of a text with errors it is not known.
+    let (Some(camera), Some(meaning)) = (camera, meaning) else { return Ok(Value::Null) };
     let Some(cameras) = meaning.analysis.cameras().filter(|cameras| !cameras.contains(&camera)) else {
         return Ok(Value::Null);
     };
@@ -157,9 +181,14 @@ fn load(newest: &Newest, key: &Key, reading: &Reading, overrides: &Overrides) ->
     let Some(document) = view.documents.get(key) else {
         return scene::load(path, &Reading { root: Some(root.into()), ..reading.clone() }, overrides);
     };
+    if document.kept != Kept::Whole {
+        return Err(Problem::new(
+            "what stands in the editor is not known: close the scene there and open it again",
+        ));
+    }
     let disk = Disk::below(root)?;
     let place = disk.path_of(path)?;
-    for (key, document) in view.documents.iter() {
+    for (key, document) in view.documents.iter().filter(|(_, document)| document.kept == Kept::Whole) {
         if let Some(place) = key.path().and_then(|path| disk.path_of(path).ok()) {
             disk.hold(place, document.text.whole().as_bytes());
         }
@@ -204,6 +233,6 @@ pub fn browse(url: &str, view: &View) -> Answer<Option<Value>> {
 }
 
 /// What is there is replaced as a whole.
-fn lock(newest: &Newest) -> std::sync::MutexGuard<'_, Arc<View>> {
+pub fn lock(newest: &Newest) -> std::sync::MutexGuard<'_, Arc<View>> {
     newest.lock().unwrap_or_else(PoisonError::into_inner)
 }

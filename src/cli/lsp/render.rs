@@ -92,7 +92,9 @@ fn watch(order: &Order, control: &Control, name: &str, done: &AtomicBool) {
     let progress = |value: Value| tell(order, Notified::Progress, json!({ "token": token, "value": value }));
     // Nothing is told under a token before the client has taken it.
     let create = Ask::new(lsp::LspRequestMethod::WindowWorkDoneProgressCreate, json!({ "token": token }));
-    let (agreed, mut begun) = (create.agreed.clone(), false);
+    let (agreed, mut begun) = (Arc::new(AtomicBool::new(false)), false);
+    let agrees = agreed.clone();
+    let create = create.then(move |answer| agrees.store(answer.is_ok(), Ordering::Relaxed));
     if order.view.session.client.progress {
         let _ = order.told.send(Told::Asks(create));
     }

@@ -8,6 +8,7 @@ use super::client::{Client, encoding};
 use super::commands::{self, Order, Renders};
 use super::diagnostics::Board;
 use super::documents::{Changed, Documents, Key};
+use super::ending;
 use super::pages::Pages;
 use super::preview::{self, Previews};
 use super::reads::Reads;
@@ -15,7 +16,7 @@ use super::render;
 use super::requests::{self, Lane, read};
 use super::uri::path_of;
 use super::view::{Session, View};
-use super::work::{Answer, Ask, Desk, Failure, Question, Told, guarded};
+use super::work::{Answer, Ask, Desk, Failure, Heard, Question, Told, guarded};
 use crate::cli::Exit;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::live::watcher::Watcher;
@@ -61,9 +62,9 @@ pub struct Server {
     renders: Renders,
     /// Tells of files that change, where the client does not.
     watcher: Option<Watcher>,
-    /// What waits for an answer: of the client each with what says that none is wanted, and of the server each with what says
-    /// that there was one.
-    waiting: ReqQueue<Arc<AtomicBool>, Arc<AtomicBool>>,
+    /// What waits for an answer: of the client each with what says that none is wanted, and of the server each with who hears
+    /// it.
+    waiting: ReqQueue<Arc<AtomicBool>, Heard>,
     count: usize,
     board: Board,
     reads: Reads,
@@ -111,6 +112,7 @@ impl Server {
                     Err(_) => break,
                 },
                 recv(told) -> told => match told {
+                    Ok(Told::Gone) => break,
                     Ok(told) => {
                         // What goes wrong here is reported, and the server lives.
                         let _ = guarded(|| self.hear(told));
@@ -147,9 +149,12 @@ impl Server {
                 let _ = self.notification(notification);
             }
             Message::Response(response) => {
-                let asked = self.waiting.outgoing.complete(response.id);
-                if let Some(agreed) = asked.filter(|_| response.response_result.is_ok()) {
-                    agreed.store(true, Ordering::Relaxed);
+                if let Some(heard) = self.waiting.outgoing.complete(response.id) {
+                    heard(
+                        response
+                            .response_result
+                            .map_err(|error| Failure { code: error.code, message: error.message }),
+                    );
                 }
             }
         }
@@ -234,9 +239,9 @@ impl Server {
 
     /// Shows the picture of a document from now on, and gives the address.
     fn preview(&mut self, order: &Order) -> Answer<Value> {
-        let url = self.previews.start(order)?;
+        let url = self.previews.start(order, &self.view)?;
         // Not through the queue of what is told: who hears it would wait for itself.
-        if let Some(page) = preview::browse(&url, &order.view)? {
+        if let Some(page) = preview::browse(&url, &self.view)? {
             self.ask_client(Ask::new(preview::SHOW, page));
         }
         Ok(json!({ "url": url }))
@@ -261,6 +266,8 @@ impl Server {
 
     fn initialize(&mut self, params: &Value) -> Answer<Value> {
         self.life = Life::Serving;
+        let tell = self.tell.clone();
+        ending::with_client(params, &self.interrupt, move || drop(tell.send(Told::Gone)));
         let folders = params.get("workspaceFolders").and_then(Value::as_array).cloned().unwrap_or_default();
         let uris = folders.iter().filter_map(|folder| folder.get("uri"));
         let uris: Vec<&str> = uris
@@ -305,7 +312,7 @@ impl Server {
             }
             Method::TextDocumentDidChange => {
                 let changed: Changed = read(params)?;
-                let key = Key::of(&changed.text_document.text_document_identifier.uri);
+                let key = Key::of(&changed.text_document.uri);
                 let view = Arc::make_mut(&mut self.view);
                 let encoding = view.session.encoding;
                 view.documents.change(&key, changed, encoding);
@@ -335,13 +342,18 @@ impl Server {
     }
 
     fn cancel(&mut self, id: RequestId) {
+        self.give_up(id, Failure::cancelled());
+    }
+
+    /// Answers a request that somebody may be at work on.
+    fn give_up(&mut self, id: RequestId, why: Failure) {
         self.desk.drop_question(&id);
         if let Some(cancelled) = self.waiting.incoming.complete(&id) {
             cancelled.store(true, Ordering::Relaxed);
             self.count -= 1;
             self.renders.forget(&id);
             self.previews.wanted(&id);
-            self.send(id, Err(Failure::cancelled()));
+            self.send(id, Err(why));
         }
     }
 
@@ -354,7 +366,9 @@ impl Server {
 
     fn hear(&mut self, told: Told) {
         match told {
-            Told::Answered(id, answer) => {
+            // It was answered already, and its id may be that of another request by now.
+            Told::Answered(_, _, cancelled) if cancelled.load(Ordering::Relaxed) => {}
+            Told::Answered(id, answer, _) => {
                 let answer = match self.previews.wanted(&id) {
                     Some(order) => {
                         answer.and_then(|_| guarded(|| self.preview(&order)).and_then(|answer| answer))
@@ -363,6 +377,7 @@ impl Server {
                 };
                 self.finish(id, answer);
             }
+            Told::Gone => {}
             Told::Changed => self.saved_at(self.reads.files().into_iter().cloned().collect()),
             Told::Notifies(method, params) => self.notify(method, params),
             Told::Asks(ask) => self.ask_client(ask),
@@ -413,8 +428,8 @@ impl Server {
     }
 
     /// Asks the client something.
-    fn ask_client(&mut self, Ask { method, params, agreed }: Ask) {
-        let request = self.waiting.outgoing.register(method, params, agreed);
+    fn ask_client(&mut self, Ask { method, params, heard }: Ask) {
+        let request = self.waiting.outgoing.register(method, params, heard);
         let _ = self.connection.sender.send(request.into());
     }
 

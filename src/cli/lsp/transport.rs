@@ -3,32 +3,54 @@
 //! Both queues are short. A client that reads nothing is not answered without end, and one that writes faster than it is
 //! answered waits.
 
+use super::ending::{PATIENCE, end_soon};
 use super::frame::{self, Frame};
 use super::message::{self, Refusal};
+use crate::cli::interrupt::Interrupt;
 use crossbeam_channel::{Receiver, Sender, bounded};
 use lsp_server::{Connection, Message};
 use std::io::{self, BufReader, stdin, stdout};
-use std::thread::{Builder, JoinHandle};
+use std::thread::Builder;
 
 /// Messages that wait in one direction.
 const QUEUE: usize = 256;
 
-/// A connection over standard input and output, and the thread that writes: it ends once the connection is gone and all
-/// that was sent is written.
+/// What writes. It ends once the connection is gone and all that was sent is written.
+pub struct Writer {
+    ended: Receiver<()>,
+}
+
+impl Writer {
+    /// Waits for its end, but not for ever: a client may take nothing any more.
+    pub fn finish(self) {
+        // Nothing is sent: it goes with the thread.
+        let _ = self.ended.recv_timeout(PATIENCE);
+    }
+}
+
+/// A connection over standard input and output, and what writes. Behind the end of the input the process ends soon.
 ///
 /// # Errors
 ///
 /// Where the system gives no more threads.
-pub fn start() -> io::Result<(Connection, JoinHandle<()>)> {
+pub fn start(interrupt: &Interrupt) -> io::Result<(Connection, Writer)> {
     let (read, receiver) = bounded(QUEUE);
     let (sender, written) = bounded(QUEUE);
-    Builder::new().name("read".into()).spawn(move || read_all(&read))?;
-    let writer = Builder::new().name("write".into()).spawn(move || write_all(&written))?;
-    Ok((Connection { sender, receiver }, writer))
+    let (ends, ended) = bounded::<()>(0);
+    let interrupt = interrupt.clone();
+    Builder::new().name("read".into()).spawn(move || {
+        read_all(read);
+        end_soon(&interrupt)
+    })?;
+    Builder::new().name("write".into()).spawn(move || {
+        write_all(&written);
+        drop(ends);
+    })?;
+    Ok((Connection { sender, receiver }, Writer { ended }))
 }
 
 /// Until the input ends or nobody listens.
-fn read_all(sender: &Sender<Message>) {
+fn read_all(sender: Sender<Message>) {
     let mut input = BufReader::new(stdin());
     while let Ok(Some(frame)) = frame::read(&mut input) {
         let read = match frame {

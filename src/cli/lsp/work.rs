@@ -68,14 +68,16 @@ pub struct Question {
 
 /// What a thread has to say.
 pub enum Told {
-    /// A question is answered.
-    Answered(RequestId, Answer<Value>),
+    /// A question is answered: its request, the answer, and whether nobody waits for it any more.
+    Answered(RequestId, Answer<Value>, Arc<AtomicBool>),
     /// Files may have changed.
     Changed,
     /// Something for the client, by method and parameters.
     Notifies(String, Value),
     /// A question for the client.
     Asks(Ask),
+    /// The client is gone.
+    Gone,
     /// A document was looked at.
     Looked {
         /// Which.
@@ -89,20 +91,28 @@ pub enum Told {
     },
 }
 
-/// A question for the client. What it answers makes no difference, but whether it agrees may.
+/// A question for the client.
 pub struct Ask {
     /// The request.
     pub method: String,
     /// Its parameters.
     pub params: Value,
-    /// Set by an answer that is no error.
-    pub agreed: Arc<AtomicBool>,
+    /// Who hears the answer, on the thread that hears all.
+    pub heard: Heard,
 }
+
+/// Hears an answer of the client.
+pub type Heard = Box<dyn FnOnce(Answer<Value>) + Send>;
 
 impl Ask {
     /// One whose answer nobody waits for.
     pub fn new(method: LspRequestMethod, params: Value) -> Ask {
-        Ask { method: method.as_str().into(), params, agreed: Arc::default() }
+        Ask { method: method.as_str().into(), params, heard: Box::new(drop) }
+    }
+
+    /// The same, with somebody who waits.
+    pub fn then(self, heard: impl FnOnce(Answer<Value>) + Send + 'static) -> Ask {
+        Ask { heard: Box::new(heard), ..self }
     }
 }
 
@@ -214,8 +224,8 @@ impl Worker {
     fn run(mut self, lane: Lane) {
         loop {
             let job = self.desk.next(lane);
-            let id = match &job {
-                Job::Question(question) => Some(question.id.clone()),
+            let asked = match &job {
+                Job::Question(question) => Some((question.id.clone(), question.cancelled.clone())),
                 Job::Look(..) => None,
             };
             let answer = guarded(|| self.work(job)).unwrap_or_else(|failure| {
@@ -223,8 +233,8 @@ impl Worker {
                 self.analyst = Analyst::default();
                 Some(Err(failure))
             });
-            if let Some((id, answer)) = id.zip(answer)
-                && self.told.send(Told::Answered(id, answer)).is_err()
+            if let Some(((id, cancelled), answer)) = asked.zip(answer)
+                && self.told.send(Told::Answered(id, answer, cancelled)).is_err()
             {
                 return;
             }
@@ -356,7 +366,7 @@ mod tests {
             ask(lane, 1, |_, _| panic!("oh"));
             ask(lane, 2, |_, _| Ok(Value::Null));
             let answers = [told.recv(), told.recv()].map(|told| match told {
-                Ok(Told::Answered(id, answer)) => (id, answer.map_err(|failure| failure.code)),
+                Ok(Told::Answered(id, answer, _)) => (id, answer.map_err(|failure| failure.code)),
                 _ => panic!("no answer"),
             });
             let wrong: Result<Value, i32> = Err(ErrorCode::InternalError as i32);

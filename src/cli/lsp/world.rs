@@ -54,9 +54,11 @@ impl World {
         let open = |(key, document): (&Key, &Arc<Document>)| {
             Some((place(key.path()?)?, (key.clone(), document.clone())))
         };
-        let open: BTreeMap<_, _> = view.documents.iter().filter_map(open).collect();
+        let mut open: BTreeMap<_, _> = view.documents.iter().filter_map(open).collect();
         let name = || file.file_name().map_or("scene.rt".into(), |name| name.to_string_lossy());
         let own = place(file).unwrap_or_else(|| FilePath::root(&name()));
+        // Whatever its path is: what is open is no other file, nor another name of it that is open too.
+        open.extend(view.documents.get(key).map(|document| (own.clone(), (key.clone(), document.clone()))));
         let folder = own.as_str().rfind('/').map_or("", |at| &own.as_str()[..=at]);
         World {
             within: if whole { String::new() } else { folder.into() },

@@ -3,7 +3,7 @@
 use super::super::Desk;
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
-use std::process::{Child, ChildStdin, Stdio};
+use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
@@ -31,13 +31,19 @@ impl<'d> Client<'d> {
 
     /// Starts it with arguments.
     pub fn started(desk: &'d Desk, arguments: &str) -> Client<'d> {
-        let mut child = desk
-            .command(arguments)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::inherit())
-            .spawn()
-            .unwrap();
+        Client::of(desk, desk.command(arguments))
+    }
+
+    /// Starts it with a folder of its own for what does not last.
+    pub fn in_place(desk: &'d Desk, temporary: &std::path::Path) -> Client<'d> {
+        let mut command = desk.command("lsp");
+        command.env("TMPDIR", temporary);
+        Client::of(desk, command)
+    }
+
+    fn of(desk: &'d Desk, mut command: Command) -> Client<'d> {
+        let mut child =
+            command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::inherit()).spawn().unwrap();
         let mut output = BufReader::new(child.stdout.take().unwrap());
         let (sender, messages) = channel();
         std::thread::spawn(move || {

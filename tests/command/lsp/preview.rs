@@ -2,37 +2,19 @@
 
 use super::super::{Desk, read_png};
 use super::client::{Client, PATIENCE};
+use super::page::{Page, get};
 use serde_json::{Value, json};
-use std::io::{Read, Write};
-use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
 fn scene(width: u32) -> String {
     format!("sphere ball {{ radius: 1m }}\nrender {{ size: ({width}, 18), samples: 1 }}\n")
 }
 
-fn start(client: &mut Client, name: &str) -> String {
+pub fn start(client: &mut Client, name: &str) -> String {
     let arguments = json!([{ "uri": client.uri(name) }]);
     let started = client
         .ask("workspace/executeCommand", json!({ "command": "rtc.startPreview", "arguments": arguments }));
     started.unwrap()["url"].as_str().unwrap().to_string()
-}
-
-/// Host, with port, and path of an address.
-fn parts(url: &str) -> (&str, &str) {
-    let rest = url.strip_prefix("http://").unwrap();
-    rest.split_at(rest.find('/').unwrap())
-}
-
-/// What is at an address: the body of the answer, if there is one.
-fn get(url: &str) -> Option<Vec<u8>> {
-    let (host, path) = parts(url);
-    let mut stream = TcpStream::connect(host).unwrap();
-    write!(stream, "GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").unwrap();
-    let mut answer = vec![];
-    stream.read_to_end(&mut answer).unwrap();
-    let body = answer.windows(4).position(|end| end == b"\r\n\r\n").unwrap() + 4;
-    answer.starts_with(b"HTTP/1.1 200").then(|| answer[body..].to_vec())
 }
 
 /// Waits for a picture of a width.
@@ -42,65 +24,6 @@ fn until_wide(url: &str, width: u32) {
     while get(&format!("{url}picture.png")).is_none_or(|png| read_png(&png).0[0] != width) {
         assert!(start.elapsed() < PATIENCE, "no picture is {width} wide");
         std::thread::sleep(Duration::from_millis(10));
-    }
-}
-
-/// The talk of a page, by the letter (RFC 6455).
-struct Page {
-    stream: TcpStream,
-}
-
-impl Page {
-    fn new(url: &str) -> Page {
-        let (host, path) = parts(url);
-        let mut stream = TcpStream::connect(host).unwrap();
-        stream.set_read_timeout(Some(PATIENCE)).unwrap();
-        write!(
-            stream,
-            "GET {path}socket HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n\
-             Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
-        )
-        .unwrap();
-        let mut head = vec![];
-        while !head.ends_with(b"\r\n\r\n") {
-            let mut byte = [0];
-            stream.read_exact(&mut byte).unwrap();
-            head.extend(byte);
-        }
-        assert!(head.starts_with(b"HTTP/1.1 101"), "{}", String::from_utf8_lossy(&head));
-        Page { stream }
-    }
-
-    /// Sends a short text; its mask changes nothing.
-    fn say(&mut self, message: &Value) {
-        let text = message.to_string();
-        let length = u16::try_from(text.len()).unwrap().to_be_bytes();
-        self.stream.write_all(&[0x81, 0x80 | 126, length[0], length[1], 0, 0, 0, 0]).unwrap();
-        self.stream.write_all(text.as_bytes()).unwrap();
-    }
-
-    /// Waits for a text, and passes over all else.
-    fn wait(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
-        loop {
-            let [first, second] = self.take();
-            let length = match second {
-                126 => u16::from_be_bytes(self.take()).into(),
-                127 => u64::from_be_bytes(self.take()),
-                short => short.into(),
-            };
-            let mut body = vec![0; length as usize];
-            self.stream.read_exact(&mut body).unwrap();
-            let message = serde_json::from_slice(&body).unwrap_or_default();
-            if first == 0x81 && wanted(&message) {
-                return message;
-            }
-        }
-    }
-
-    fn take<const N: usize>(&mut self) -> [u8; N] {
-        let mut bytes = [0; N];
-        self.stream.read_exact(&mut bytes).unwrap();
-        bytes
     }
 }
 

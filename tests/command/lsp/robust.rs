@@ -1,8 +1,11 @@
 //! Whatever comes in, the server lives and answers what it can.
 
 use super::super::Desk;
-use super::client::Client;
+use super::client::{Client, PATIENCE};
 use serde_json::{Value, json};
+use std::io::Write;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
 
 const BAD: &str = "sphere { radius: 8deg }\n";
 
@@ -42,6 +45,104 @@ fn an_end_that_was_not_announced_is_a_failure() {
     client.send_bytes(b"Content-Length: 100\r\n\r\n{\"jsonrpc\"");
     client.hang_up();
     assert_eq!(client.code(), Some(1));
+}
+
+#[cfg(unix)]
+#[test]
+fn the_server_ends_with_the_client() {
+    let desk = Desk::new();
+    let mut editor = Command::new("sleep").arg("1000").spawn().unwrap();
+    let params = json!({ "processId": editor.id(), "capabilities": {} });
+    let mut client = Client::silent(&desk).agreed(params.clone());
+    client.open("a.rt", BAD);
+    let said = client.diagnostics("a.rt", Some(1));
+    let page = said[0]["codeDescription"]["href"].as_str().unwrap().strip_prefix("file://").unwrap();
+    let folder = std::path::Path::new(page).parent().unwrap();
+    assert!(folder.exists());
+    // Another one knows whose folder it is.
+    let mut other = Client::silent(&desk).agreed(params.clone());
+    other.open("a.rt", BAD);
+    other.diagnostics("a.rt", Some(1));
+    assert!(folder.exists());
+    editor.kill().unwrap();
+    editor.wait().unwrap();
+    // Nobody has hung up.
+    assert_eq!((client.code(), other.code()), (Some(1), Some(1)));
+    assert!(!folder.exists());
+    // A number that is of no process here may be of one elsewhere.
+    for process in
+        [params["processId"].clone(), json!(null), json!(-1), json!(0), json!(u64::MAX), json!("x")]
+    {
+        let mut client = Client::silent(&desk).agreed(json!({ "processId": process, "capabilities": {} }));
+        std::thread::sleep(Duration::from_millis(50));
+        lives(&mut client);
+        assert_eq!(client.end(), Some(0));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn who_holds_the_pipes_of_a_client_that_is_gone_does_not_keep_the_server() {
+    let desk = Desk::new();
+    let mut editor = Command::new("sleep").arg("1000").spawn().unwrap();
+    let mut server = desk.command("lsp").stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    let mut input = server.stdin.take().unwrap();
+    let process = json!({ "processId": editor.id(), "capabilities": {} });
+    let mut send = move |id: i32, method: &str, params: &Value| {
+        let body = json!({ "jsonrpc": "2.0", "id": id, "method": method, "params": params }).to_string();
+        write!(input, "Content-Length: {}\r\n\r\n{body}", body.len()).is_ok()
+    };
+    // More answers than pipes and queues hold, which nobody reads.
+    let floods = std::thread::spawn(move || {
+        assert!(send(0, "initialize", &process));
+        (1..).find(|id| !send(*id, "none", &Value::Null))
+    });
+    std::thread::sleep(Duration::from_millis(500));
+    editor.kill().unwrap();
+    editor.wait().unwrap();
+    let start = Instant::now();
+    while server.try_wait().unwrap().is_none() {
+        assert!(start.elapsed() < PATIENCE, "it does not end");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    floods.join().unwrap();
+}
+
+#[cfg(unix)]
+#[test]
+fn what_a_server_left_that_was_killed_is_removed() {
+    let desk = Desk::new();
+    let place = desk.path("tmp");
+    std::fs::create_dir(&place).unwrap();
+    let folders = || -> Vec<_> {
+        let entries = std::fs::read_dir(&place).unwrap();
+        entries.map(|entry| entry.unwrap().path()).collect()
+    };
+    let serve = || {
+        let mut client = Client::in_place(&desk, &place).agreed(json!({ "capabilities": {} }));
+        client.open("a.rt", BAD);
+        client.diagnostics("a.rt", Some(1));
+        client
+    };
+    let first = serve();
+    assert_eq!(folders().len(), 1);
+    let left = folders();
+    // Killed.
+    drop(first);
+    assert_eq!(folders(), left);
+    // What is of somebody else stays.
+    std::fs::create_dir(place.join("rtc-codes-strange")).unwrap();
+    std::fs::write(place.join("rtc-codes-file"), "").unwrap();
+    let elsewhere = desk.path("elsewhere");
+    std::fs::create_dir(&elsewhere).unwrap();
+    std::fs::write(elsewhere.join("lock"), "").unwrap();
+    std::os::unix::fs::symlink(&elsewhere, place.join("rtc-codes-link")).unwrap();
+    let second = serve();
+    assert!(!left[0].exists());
+    assert_eq!(folders().len(), 4);
+    assert_eq!(second.end(), Some(0));
+    assert_eq!(folders().len(), 3);
+    assert!(elsewhere.join("lock").exists());
 }
 
 #[test]
@@ -116,6 +217,61 @@ fn much() -> String {
 }
 
 #[test]
+fn an_id_that_was_given_up_may_be_that_of_another_request() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    let uri = client.uri("a.rt");
+    for round in 0..20 {
+        // The one is at work on while it is cancelled, and the other waits behind it.
+        client.tell(
+            "textDocument/didOpen",
+            json!({ "textDocument": { "uri": uri, "languageId": "rt", "version": round, "text": much() } }),
+        );
+        let position = json!({ "line": 0, "character": 1 });
+        let hover = json!({ "textDocument": { "uri": uri }, "position": position });
+        client.send(&json!({ "id": "same", "method": "textDocument/hover", "params": hover }));
+        client.tell("$/cancelRequest", json!({ "id": "same" }));
+        client.send(&json!({ "id": "same", "method": "textDocument/codeLens", "params": hover }));
+        let _ = client.answer(&json!("same"));
+        let lenses = client.answer(&json!("same")).unwrap();
+        assert!(lenses.is_array(), "{lenses}");
+    }
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn documents_may_have_odd_names_and_odd_letters() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    let folder = client.uri("");
+    let names = ["vscode-remote://ssh/a.rt", "git:/a.rt?b", "x", "file:///%00.rt", "file://elsewhere/a.rt"];
+    let names = names.map(String::from).into_iter().chain([folder.clone(), format!("{folder}%ff.rt")]);
+    for uri in names {
+        let item = json!({ "uri": uri, "languageId": "rt", "version": 1, "text": BAD });
+        client.tell("textDocument/didOpen", json!({ "textDocument": item }));
+        let said = client.wait("diagnostics", |message| message["params"]["uri"] == *uri);
+        assert_eq!(said["params"]["diagnostics"][0]["code"], "E0203", "{uri}");
+    }
+    // Half a character is one of the same width, and what is behind it keeps its place.
+    client.open("a.rt", "sphere { radius: 1m }\n");
+    let uri = client.uri("a.rt");
+    let text = r"/*\ud83d*/ sphere { radius: 8deg }\n";
+    let body = format!(
+        r#"{{"method":"textDocument/didChange","params":{{"textDocument":{{"uri":"{uri}","version":2}},"contentChanges":[{{"text":"{text}"}}]}}}}"#
+    );
+    client.send_bytes(format!("Content-Length: {}\r\n\r\n{body}", body.len()).as_bytes());
+    let said = client.diagnostics("a.rt", Some(2));
+    assert_eq!(said[0]["range"]["start"], json!({ "line": 0, "character": 23 }));
+    // An edit that says of no version what it is of is an edit.
+    let at = json!({ "line": 0, "character": 23 });
+    let changes = json!([{ "range": { "start": at, "end": at }, "text": "1m //" }]);
+    let document = json!({ "uri": uri });
+    client.tell("textDocument/didChange", json!({ "textDocument": document, "contentChanges": changes }));
+    assert_eq!(client.codes("a.rt", Some(2)), ["E0002"]);
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
 fn a_request_that_is_cancelled_is_answered_once() {
     let desk = Desk::new();
     let mut client = Client::new(&desk);
@@ -170,6 +326,29 @@ fn a_long_document_is_edited_within_bounds() {
     assert!(!codes.is_empty());
     #[cfg(target_os = "linux")]
     assert!(client.memory() < 2500 << 20, "{} MB", client.memory() >> 20);
+    assert_eq!(client.end(), Some(0));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn thousands_of_edits_take_no_more_memory_than_hundreds() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    client.open("a.rt", &much());
+    let edit = |client: &mut Client, versions: std::ops::Range<i32>| {
+        let last = versions.end - 1;
+        for version in versions {
+            let (end, text) = if version % 2 == 0 { (0, "x") } else { (1, "") };
+            let at = |character: u32| json!({ "line": version / 2 % 3000, "character": character });
+            let change = json!([{ "range": { "start": at(0), "end": at(end) }, "text": text }]);
+            client.change("a.rt", version, change);
+        }
+        assert_eq!(client.codes("a.rt", Some(last)), Vec::<String>::new());
+        client.memory()
+    };
+    let before = edit(&mut client, 2..502);
+    let after = edit(&mut client, 502..20_502);
+    assert!(after < before + (32 << 20), "{} MB, then {} MB", before >> 20, after >> 20);
     assert_eq!(client.end(), Some(0));
 }
 

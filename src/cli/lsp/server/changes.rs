@@ -3,6 +3,7 @@
 use super::Server;
 use crate::cli::lsp::documents::Key;
 use crate::cli::lsp::uri::path_of;
+use crate::cli::lsp::work::Failure;
 use gen_lsp_types as lsp;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -22,7 +23,9 @@ impl Server {
     pub(super) fn close(&mut self, key: &Key) {
         Arc::make_mut(&mut self.view).documents.close(key);
         self.reads.forget(key);
-        self.previews.close(key);
+        for id in self.previews.close(key) {
+            self.give_up(id, Failure::plain("the document was closed before its preview was there"));
+        }
         for told in self.board.close(key, &self.view) {
             self.publish(told);
         }
