@@ -25,7 +25,7 @@ pub fn parse(text: &str) {
 }
 
 /// Laid out again, a text is the same; its comments and its tree are those of the text before; what has a slip
-/// still has it; and nothing is lost.
+/// still has it; nothing is lost; and the text begins and its lines end as they did.
 pub fn fmt(text: &str) {
     let (formatted, slips) = syntax::format(SOURCE, text);
     let (before, _) = syntax::parse(SOURCE, text);
@@ -36,6 +36,8 @@ pub fn fmt(text: &str) {
     assert_eq!(shape, again, "tree\n{text}\n---\n{formatted}");
     assert_eq!(signs(text), signs(&formatted), "signs\n{text}\n---\n{formatted}");
     assert_eq!(syntax::format(SOURCE, &formatted).0, formatted, "again\n{text}");
+    let returns = ends(text).first().copied().unwrap_or(false);
+    assert!(formatted == text || ends(&formatted).iter().all(|end| *end == returns), "line ends\n{text}");
 }
 
 /// Compiling ends, and says something of every text that gives no scene.
@@ -85,8 +87,15 @@ fn said(slips: &[Diagnostic]) -> Vec<String> {
     slips.iter().map(|slip| format!("{} {}", slip.code.as_str(), slip.message)).collect()
 }
 
+/// Whether a return stands before each line end.
+fn ends(text: &str) -> Vec<bool> {
+    text.match_indices('\n').map(|(at, _)| text[..at].ends_with('\r')).collect()
+}
+
 fn comments(text: &str, file: &File) -> Vec<String> {
-    file.comments.iter().map(|comment| text[comment.span.range()].trim_end().to_string()).collect()
+    let lines =
+        |text: &str| text.lines().map(|line| line.trim_end_matches('\r')).collect::<Vec<_>>().join("\n");
+    file.comments.iter().map(|comment| lines(text[comment.span.range()].trim_end())).collect()
 }
 
 /// What no layout adds or takes away, in an order that does not depend on where comments stand.

@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, Fix};
 use crate::span::{SourceId, Span};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A text after some slips were mended.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,6 +38,25 @@ pub fn mend(text: &str, source: SourceId, diagnostics: &[Diagnostic]) -> Option<
     }
     mended.push_str(&text[copied..]);
     (!applied.is_empty()).then_some(Mended { text: mended, applied })
+}
+
+/// The most rounds of mending. Most files need one or two.
+const MOST_ROUNDS: usize = 100;
+
+/// Mending again and again, each time what was found in the text that the last round left.
+#[derive(Debug, Default)]
+pub struct Rounds {
+    /// The texts that there were: a mend that leads back would go on for ever.
+    seen: BTreeSet<String>,
+}
+
+impl Rounds {
+    /// Makes the edits of the next round, as [`mend`] does. None where nothing is left to be mended, or it leads nowhere.
+    pub fn next(&mut self, text: &str, source: SourceId, diagnostics: &[Diagnostic]) -> Option<Mended> {
+        self.seen.insert(text.to_string());
+        let mended = mend(text, source, diagnostics)?;
+        (self.seen.len() <= MOST_ROUNDS && !self.seen.contains(&mended.text)).then_some(mended)
+    }
 }
 
 /// Whether all edits lie within a source, and not on each other.
@@ -78,6 +97,15 @@ mod tests {
         let mended =
             mend("abcdef", SOURCE, &[at(1, 3, "X"), at(2, 4, "Y"), at(3, 3, "Z"), at(5, 6, "W")]).unwrap();
         assert_eq!((mended.text.as_str(), mended.applied.as_slice()), ("aXdeW", &[0, 3][..]));
+    }
+
+    #[test]
+    fn rounds_end_where_they_lead_back() {
+        let mut rounds = Rounds::default();
+        let there = rounds.next("a", SOURCE, &[at(0, 1, "b")]).unwrap();
+        assert_eq!(there.text, "b");
+        assert_eq!(rounds.next("b", SOURCE, &[at(0, 1, "a")]), None);
+        assert_eq!(rounds.next("b", SOURCE, &[]), None);
     }
 
     #[test]

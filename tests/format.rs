@@ -95,6 +95,23 @@ fn a_broken_item_stays_as_it_is() {
     assert_eq!(formatted, format!("plane {{}}\n\n{broken} // c\nplane {{ material: a }}\n"));
 }
 
+/// A file from another system is laid out as it would be here, and stays a file of that system.
+#[test]
+fn line_ends_and_marks_of_encodings_stay() {
+    let texts =
+        case_files().into_iter().map(|(_, text)| text).chain([include_str!("cases/format/layout.rt").into()]);
+    for text in texts.filter(|text| text.contains('\n') && !text.contains('\r')) {
+        let formatted = format(SOURCE, &text).0;
+        for mark in ["", "\u{feff}"] {
+            let elsewhere = |text: &str| format!("{mark}{}", text.replace('\n', "\r\n"));
+            assert_eq!(format(SOURCE, &elsewhere(&text)).0, elsewhere(&formatted));
+        }
+    }
+    // The first line end of several decides, also within what has a slip.
+    assert_eq!(format(SOURCE, "plane {\r\n}\nbox {size = 1,\n}").0, "plane {}\r\nbox {size = 1,\r\n}\r\n");
+    assert_eq!(format(SOURCE, "plane {\n}\r\n/* a\r\n b */").0, "plane {}\n/* a\n b */\n");
+}
+
 // --- Texts without slips, laid out at random ---------------------------------------------------------------
 
 fn one_of(words: &'static [&'static str]) -> impl Strategy<Value = String> + Clone {

@@ -71,6 +71,10 @@ impl<'a> Checker<'a> {
         self.scopes.push(scope);
         for cycle in cycles {
             let names: Vec<&Name> = cycle.iter().filter_map(|&item| items[item].name()).collect();
+            if names.is_empty() {
+                // Loops without a body, by the variables that are taken to be known behind them: they were reported.
+                continue;
+            }
             let set = cycle.iter().find_map(|&item| setting(&items[item]).zip(items[item].name()));
             self.report(match set {
                 Some((value, name)) => errors::cycle_of_setting(name, value.span, &names),
@@ -231,7 +235,7 @@ impl<'a> Checker<'a> {
             Type::Scalar(element) => element.dim(),
             _ => units::NONE,
         };
-        let said = Arc::new(Variable { name: variable.text.clone(), dim });
+        let said = Arc::new(Variable { name: variable.text.clone(), dim, span: variable.span });
         let slot = self.declare_alone(&mut scope, variable, item, true);
         self.scopes.push(scope);
         let body = self.branch(body, "for");

@@ -31,9 +31,8 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
         Diagnostic::new(code, format!("unknown {what} `{}`", name.text), name.span).at("not known here");
     // A unit of two letters is near to all others; only its first letter tells what was meant.
     let start = name.text.chars().next();
-    let same_start = |guess: &Guess| {
-        what != "unit" || guess.name.chars().next() == start || guess.name == name.text.to_lowercase()
-    };
+    let same_start =
+        |guess: &str| what != "unit" || guess.chars().next() == start || guess == name.text.to_lowercase();
     if let Some(word) = written_as(what, &name.text) {
         return diagnostic.help(format!("write `{word}`")).fix(name.span, word);
     }
@@ -44,7 +43,11 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
     if let Some(help) = said_otherwise(what, &name.text) {
         return diagnostic.help(help);
     }
-    let guess = closest(&name.text, candidates).filter(same_start);
+    let guess = closest(&name.text, candidates).filter(|guess| same_start(guess.name));
+    let guess = guess.map(|mut guess| {
+        guess.near.retain(|near| same_start(near));
+        guess
+    });
     // An exact word of elsewhere says more than what merely lies near.
     let elsewhere =
         || familiar::kind(&name.text).filter(|here| here.name.is_none_or(|name| candidates.contains(&name)));

@@ -8,7 +8,7 @@ use crate::syntax::ast::{Argument, ExprKind as Tree};
 use crate::units::{self, ANGLE, LENGTH, TEMPERATURE};
 
 macro_rules! functions {
-    ($($(#[doc = $doc:literal])* $variant:ident $name:literal $signature:literal,)*) => {
+    ($($(#[doc = $doc:literal])* $variant:ident $name:literal $signature:literal $types:literal,)*) => {
         /// A built-in function.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Function { $($(#[doc = $doc])* $variant,)* }
@@ -27,6 +27,12 @@ macro_rules! functions {
                 match self { $(Function::$variant => $signature,)* }
             }
 
+            /// The types of what it takes, in each of the ways to call it, and of what it gives. `quantity` is a number with or
+            /// without a unit, `triple` three of them, and `value` either, or a colour.
+            fn types(self) -> &'static str {
+                match self { $(Function::$variant => $types,)* }
+            }
+
             /// What it gives.
             pub fn doc(self) -> &'static str {
                 match self { $(Function::$variant => concat!($($doc),*).trim_ascii(),)* }
@@ -37,85 +43,109 @@ macro_rules! functions {
 
 functions! {
     /// Sine of an angle.
-    Sin "sin" "sin(angle)",
+    Sin "sin" "sin(angle)" "angle -> number",
     /// Cosine of an angle.
-    Cos "cos" "cos(angle)",
+    Cos "cos" "cos(angle)" "angle -> number",
     /// Tangent of an angle.
-    Tan "tan" "tan(angle)",
+    Tan "tan" "tan(angle)" "angle -> number",
     /// The angle between −90° and 90° with this sine.
-    Asin "asin" "asin(number)",
+    Asin "asin" "asin(number)" "number -> angle",
     /// The angle between 0° and 180° with this cosine.
-    Acos "acos" "acos(number)",
+    Acos "acos" "acos(number)" "number -> angle",
     /// The angle of the point (x, y) from the x axis.
-    Atan2 "atan2" "atan2(y, x)",
+    Atan2 "atan2" "atan2(y, x)" "quantity, quantity -> angle",
     /// Square root; of an area, a length.
-    Sqrt "sqrt" "sqrt(value)",
+    Sqrt "sqrt" "sqrt(value)" "quantity -> quantity",
     /// Without its sign.
-    Abs "abs" "abs(value)",
+    Abs "abs" "abs(value)" "quantity -> quantity",
     /// The least of them.
-    Min "min" "min(a, b, …)",
+    Min "min" "min(a, b, …)" "quantity, quantity, … -> quantity",
     /// The greatest of them.
-    Max "max" "max(a, b, …)",
+    Max "max" "max(a, b, …)" "quantity, quantity, … -> quantity",
     /// The value, kept between low and high.
-    Clamp "clamp" "clamp(value, low, high)",
+    Clamp "clamp" "clamp(value, low, high)" "quantity, quantity, quantity -> quantity",
     /// From a at t = 0 to b at t = 1; of quantities, triples and colours.
-    Mix "mix" "mix(a, b, t)",
+    Mix "mix" "mix(a, b, t)" "value, value, number -> value",
     /// The next whole number below.
-    Floor "floor" "floor(number)",
+    Floor "floor" "floor(number)" "number -> int",
     /// The next whole number above.
-    Ceil "ceil" "ceil(number)",
+    Ceil "ceil" "ceil(number)" "number -> int",
     /// The nearest whole number; halves go away from zero.
-    Round "round" "round(number)",
+    Round "round" "round(number)" "number -> int",
     /// The remainder of a / b, with the sign of b.
-    Mod "mod" "mod(a, b)",
+    Mod "mod" "mod(a, b)" "quantity, quantity -> quantity",
     /// a to the power b.
-    Pow "pow" "pow(a, b)",
+    Pow "pow" "pow(a, b)" "number, number -> number",
     /// e to a power.
-    Exp "exp" "exp(number)",
+    Exp "exp" "exp(number)" "number -> number",
     /// Natural logarithm.
-    Log "log" "log(number)",
+    Log "log" "log(number)" "number -> number",
     /// Length of a triple; of a list, how many items it has.
-    Length "length" "length(v)",
+    Length "length" "length(v)" "triple -> quantity",
     /// The vector of length 1 in the same direction.
-    Normalize "normalize" "normalize(v)",
+    Normalize "normalize" "normalize(v)" "triple -> vector",
     /// Scalar product.
-    Dot "dot" "dot(a, b)",
+    Dot "dot" "dot(a, b)" "triple, triple -> quantity",
     /// Vector product.
-    Cross "cross" "cross(a, b)",
+    Cross "cross" "cross(a, b)" "triple, triple -> triple",
     /// The whole numbers from a, or 0, up to but not including b.
-    Range "range" "range(b) or range(a, b)",
+    Range "range" "range(b) or range(a, b)" "int or int, int -> [int]",
     /// So many values, evenly from a to b, both included; of quantities and triples.
-    Linspace "linspace" "linspace(a, b, count)",
+    Linspace "linspace" "linspace(a, b, count)" "value, value, int -> [value]",
     /// A number from 0 up to but not including 1, which looks random and is always the same for the same numbers.
-    Rand "rand" "rand(i, j, …)",
+    Rand "rand" "rand(i, j, …)" "number, number, … -> number",
     /// The box around a thing: its `.min`, `.max`, `.center` and `.size`.
-    Bounds "bounds" "bounds(thing)",
+    Bounds "bounds" "bounds(thing)" "thing -> bounds",
     /// A linear colour.
-    Rgb "rgb" "rgb(r, g, b)",
+    Rgb "rgb" "rgb(r, g, b)" "number, number, number -> color",
     /// A display-referred colour, as colour pickers show it; each channel from 0 to 1.
-    Srgb "srgb" "srgb(r, g, b)",
+    Srgb "srgb" "srgb(r, g, b)" "number, number, number -> color",
     /// A display-referred colour by hue, saturation and value.
-    Hsv "hsv" "hsv(angle, s, v)",
+    Hsv "hsv" "hsv(angle, s, v)" "angle, number, number -> color",
     /// The colour of a glowing body, at luminance 1.
-    Blackbody "blackbody" "blackbody(temperature)",
+    Blackbody "blackbody" "blackbody(temperature)" "temperature -> color",
     /// Cubes of two colours or textures that alternate.
-    Checker "checker" "checker(a, b, size)",
+    Checker "checker" "checker(a, b, size)" "texture, texture, length -> texture",
     /// Layers of two colours or textures that alternate.
-    Stripes "stripes" "stripes(a, b, width, along)",
+    Stripes "stripes" "stripes(a, b, width, along)" "texture, texture, length, vector -> texture",
     /// Clouds of two colours or textures.
-    Noise "noise" "noise(a, b, size, octaves, seed)",
+    Noise "noise" "noise(a, b, size, octaves, seed)" "texture, texture, length, int, int -> texture",
     /// A picture from a file, laid on the surface.
-    Image "image" "image(file, size)",
+    Image "image" "image(file, size)" "text, length -> texture",
     /// The rows of a table in a CSV file, as a list: `row.column` of each. The path is written out.
-    Table "table" "table(file)",
+    Table "table" "table(file)" "text -> [row]",
     /// A placement that enlarges about the origin.
-    Scale "scale" "scale(k) or scale(x, y, z)",
+    Scale "scale" "scale(k) or scale(x, y, z)" "number or number, number, number -> transform",
     /// A placement that turns about one axis: from x to y about z, and so on.
-    Turn "turn" "turn(x: angle), turn(y: angle) or turn(z: angle)",
+    Turn "turn" "turn(x: angle), turn(y: angle) or turn(z: angle)" "angle or angle or angle -> transform",
     /// A placement that moves.
-    Move "move" "move(x, y, z) or move(point)",
+    Move "move" "move(x, y, z) or move(point)" "length, length, length or point -> transform",
     /// A placement that takes the axes to three vectors, and the origin to a point.
-    Matrix "matrix" "matrix(x, y, z, origin)",
+    Matrix "matrix" "matrix(x, y, z, origin)" "vector, vector, vector, point -> transform",
+}
+
+/// A way to call a built-in function.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Way {
+    /// What it takes, in order: each name with its type, as params are declared. The last is `…`, without a type, where more may
+    /// follow.
+    pub takes: Vec<(&'static str, &'static str)>,
+    /// The type of what it gives.
+    pub gives: &'static str,
+}
+
+impl Function {
+    /// The ways to call it, by the types of what it takes.
+    pub fn ways(self) -> Vec<Way> {
+        let (taken, gives) = self.types().split_once(" -> ").unwrap_or((self.types(), ""));
+        let calls = self.signature().split(" or ").flat_map(|call| call.split("), "));
+        let way = |(call, types): (&'static str, &'static str)| {
+            let names = call.split_once('(').map_or("", |(_, names)| names.trim_end_matches(')'));
+            let name = |name: &'static str| name.split(':').next().unwrap_or(name);
+            Way { takes: names.split(", ").map(name).zip(types.split(", ")).collect(), gives }
+        };
+        calls.zip(taken.split(" or ")).map(way).collect()
+    }
 }
 
 /// Finds a function by name.

@@ -26,7 +26,7 @@ mod types;
 mod unknown;
 
 pub use declared::{Declared, TYPES};
-pub use functions::Function;
+pub use functions::{Function, Way};
 pub use notes::{Filled, Home, Meaning, Notes, Visible};
 pub use program::*;
 pub use setting::{Setting, blame, settings};

@@ -193,6 +193,8 @@ pub struct Variable {
     pub name: SmolStr,
     /// The dimension of its value, if that is a quantity.
     pub dim: Dim,
+    /// Where it is named.
+    pub span: Span,
 }
 
 /// The forms of a statement.

@@ -9,14 +9,10 @@ use super::target::{Aside, print};
 use super::terminal::Terminal;
 use super::{Exit, Problem};
 use rt_lang::lower::Overrides;
-use rt_lang::mend::mend;
+use rt_lang::mend::Rounds;
 use rt_lang::report;
 use rt_lang::source::Source;
-use std::collections::BTreeSet;
 use std::path::Path;
-
-/// Rounds of mending, each on what the last one left. Most files need one or two.
-const MOST_ROUNDS: usize = 100;
 
 /// Checks every file, also those behind one that fails.
 pub fn run(arguments: &Check, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
@@ -68,15 +64,12 @@ fn fixed(
         .diagnostics
         .iter()
         .any(|diagnostic| diagnostic.code == rt_lang::diagnostic::Code::E0009);
-    let mut seen = BTreeSet::from([before.clone()]);
+    let mut rounds = Rounds::default();
     let mut done = vec![];
-    while seen.len() <= MOST_ROUNDS {
+    loop {
         let source = loaded.sources.get(loaded.id);
-        let Some(mended) = mend(&source.text, loaded.id, &loaded.compiled.diagnostics) else { break };
-        // A mend that leads back would go on for ever.
-        if !seen.insert(mended.text.clone()) {
-            break;
-        }
+        let mended = rounds.next(&source.text, loaded.id, &loaded.compiled.diagnostics);
+        let Some(mended) = mended else { break };
         let said = mended.applied.iter().map(|&index| &loaded.compiled.diagnostics[index]);
         done.extend(said.map(|diagnostic| report::short(diagnostic, &loaded.sources)));
         let input = Input::of(Source::new(source.name.clone(), mended.text));

@@ -37,7 +37,7 @@ fn show_value(value: &Value) -> String {
 
 /// `i = 2`: the turn of a loop, where its value can be said in a few words.
 pub(super) fn turn(variable: &Variable, value: &Value) -> Option<String> {
-    let Variable { name, dim } = variable;
+    let Variable { name, dim, .. } = variable;
     let shown = match value {
         Value::Number(x) => show_quantity(*x, *dim),
         Value::Bool(value) => value.to_string(),

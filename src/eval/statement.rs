@@ -143,6 +143,9 @@ impl Evaluator<'_> {
             if let Some(way) = self.uses.last_mut() {
                 way.turn = Some((variable.clone(), item.clone()));
             }
+            if index == 0 {
+                self.see_at(variable.span, &item);
+            }
             self.frame.set(slot, item);
             self.block(body, false);
             index += 1;

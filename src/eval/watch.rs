@@ -29,7 +29,7 @@ pub enum Seen {
 }
 
 /// What the values of definitions, params and fields were when they were first asked for, by the place of the expression, or of the
-/// param's name. Of a loop only the first turn is looked at, and no literals are.
+/// name of a param or of the variable of a loop. Of a loop only the first turn is looked at, and no literals are.
 pub type Values = BTreeMap<Span, Seen>;
 
 /// Looks on while a program is evaluated.
@@ -111,8 +111,8 @@ fn is_literal(expr: &Expr) -> bool {
         | ExprKind::Word(_) => true,
         ExprKind::Unary { operand, .. } => is_literal(operand),
         ExprKind::Tuple(parts) => parts.iter().all(is_literal),
-        // A unit behind parentheses.
-        ExprKind::Binary { left, right, .. } => is_literal(left) && is_literal(right),
+        // A unit behind parentheses, whose place is that of both.
+        ExprKind::Binary { left, right, .. } => right.span == expr.span && is_literal(left),
         _ => false,
     }
 }

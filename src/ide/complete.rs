@@ -148,7 +148,7 @@ impl List<'_> {
 
     /// The units that fit behind a number: those of what the field wants first.
     fn units(&mut self, typing: &Typing, field: Option<&str>) {
-        let wanted = field.and_then(|field| typing.wanted(typing.body()?.kind, field));
+        let wanted = typing.wanted_here(field);
         let dims: Vec<units::Dim> = match wanted {
             Some(Declared::Field(ty)) => dims_of(ty),
             _ => vec![],

@@ -158,13 +158,14 @@ impl<'t> Cursor<'t> {
     fn entry_of<'p>(&self, pieces: &'p [Piece]) -> Vec<&'p Piece> {
         let mut entry: Vec<&Piece> = vec![];
         let mut depth = 0usize;
-        for piece in pieces {
+        for (index, piece) in pieces.iter().enumerate() {
             match (piece.0, self.text.as_bytes()[piece.1.start]) {
                 (Lexeme::Mark, b'(' | b'[' | b'{') => depth += 1,
                 (Lexeme::Mark, b')' | b']' | b'}') => depth = depth.saturating_sub(1),
                 _ => {}
             }
-            let goes_on = entry.last().is_some_and(|last| self.goes_on(last));
+            let unfinished = || !self.begins_entry(&pieces[index + 1..]);
+            let goes_on = entry.last().is_some_and(|last| self.goes_on(last)) && unfinished();
             if depth == 0
                 && (self.is(piece, ",") || self.is(piece, ";") || piece.0 == Lexeme::Line && !goes_on)
             {
@@ -174,6 +175,21 @@ impl<'t> Cursor<'t> {
             }
         }
         entry
+    }
+
+    /// Whether a line begins a field or a statement: what stands before it is unfinished.
+    fn begins_entry(&self, line: &[Piece]) -> bool {
+        let word = |piece: &Piece| {
+            matches!(
+                &self.text[piece.1.clone()],
+                "let" | "material" | "param" | "part" | "fn" | "for" | "import" | "assert"
+            )
+        };
+        match line {
+            [(Lexeme::Word, _), colon, ..] if self.is(colon, ":") => true,
+            [first @ (Lexeme::Word, _), (Lexeme::Word | Lexeme::Text, _), ..] => word(first),
+            _ => false,
+        }
     }
 
     /// Whether the line goes on behind a piece.
@@ -229,8 +245,9 @@ impl<'t> Cursor<'t> {
         }) || matches!(last_text, ")" | "]" | "}");
         let begun: Vec<&str> = (0..self.entry.len()).map(|index| self.piece(index)).collect();
         let begun = self.without_prefixes(&begun);
-        let is_word =
-            |word: &str| matches!(word, "and" | "or" | "not" | "to" | "then" | "else" | "in" | "if");
+        let is_word = |word: &str| {
+            matches!(word, "and" | "or" | "not" | "to" | "then" | "else" | "in" | "if" | "assert")
+        };
         let after_operand = operand && !is_word(last_text);
         match begun {
             [] => Spot::Entry,
@@ -389,11 +406,14 @@ mod tests {
             ("sphere ba|", Spot::Nothing),
             ("material a = |", value("material")),
             ("param a: |", Spot::Type),
+            ("param a: int =\nparam b: |", Spot::Type),
+            ("sphere { radius: 1m +\n material: |", value("material")),
             ("param a: length = |", Spot::Value(None)),
             ("fn f(a: |", Spot::Type),
             ("fn f(a: length) -> |", Spot::Type),
             ("for i |", Spot::Keyword(&["in"])),
             ("for i in |", Spot::Value(None)),
+            ("assert |", Spot::Value(None)),
             ("import \"|", Spot::Path(true)),
             ("mesh { file: \"a/|\" }", Spot::Path(false)),
             ("// |", Spot::Nothing),

@@ -39,7 +39,7 @@ fn named(analysis: &Analysis, span: Span, meaning: Meaning) -> Option<Hover> {
                 plain(format!("{}: {}", field.name, describe_wanted(field.ty)), say::field(field)),
             )
         }
-        Meaning::Function(function) => plain(function.signature().into(), function_doc(function)),
+        Meaning::Function(function) => called(analysis, plain(say::ways(function), function_doc(function))),
         Meaning::Color(index) => {
             let (name, digits) = color::NAMED.get(index)?;
             let colour = color::from_hex(digits).map(say::displayed);
@@ -50,16 +50,34 @@ fn named(analysis: &Analysis, span: Span, meaning: Meaning) -> Option<Hover> {
     })
 }
 
-/// A field with what its value comes to.
-fn seen_field(analysis: &Analysis, span: Span, hover: Hover) -> Hover {
+/// A function, with what its call at the place gives.
+fn called(analysis: &Analysis, hover: Hover) -> Hover {
     let mut found = None;
-    analysis.walk(span.source, span.range(), &mut |piece| {
-        if let Piece::Field(field) = piece
-            && field.name.span == span
+    analysis.walk(hover.span.source, hover.span.range(), &mut |piece| {
+        if let Piece::Expr(Expr { kind: ExprKind::Call { function, .. }, span }) = piece
+            && function.rest.last().unwrap_or(&function.first).span == hover.span
         {
-            found = Some(field.value.span);
+            found = Some(*span);
         }
     });
+    with_value(analysis, hover, found)
+}
+
+/// A field with what its value comes to, also where it is asked for behind a point.
+fn seen_field(analysis: &Analysis, span: Span, hover: Hover) -> Hover {
+    let mut found = None;
+    analysis.walk(span.source, span.range(), &mut |piece| match piece {
+        Piece::Field(field) if field.name.span == span => found = Some(field.value.span),
+        Piece::Expr(Expr { kind: ExprKind::Member { member, .. }, span: all }) if member.span == span => {
+            found = Some(*all);
+        }
+        _ => {}
+    });
+    with_value(analysis, hover, found)
+}
+
+/// With what the expression at a place came to.
+fn with_value(analysis: &Analysis, hover: Hover, found: Option<Span>) -> Hover {
     match found {
         Some(place) => Hover { value: value(analysis, place), colour: colour(analysis, place), ..hover },
         None => hover,
@@ -77,17 +95,22 @@ fn declared(analysis: &Analysis, span: Span, place: Span) -> Option<Hover> {
             Hover { span, code, value: None, doc: String::new(), colour: None }
         }
         Declared::Variable(statement) => {
+            let found = analysis.study.values.get(&place);
+            let shown = found.and_then(|seen| say::value(seen, Some(&ty)));
             let code = match &statement.kind {
                 StatementKind::For { variable, list, .. } => {
                     format!("for {} in {} // {}", variable.text, first_line(&text(list.span)), say::ty(&ty))
                 }
                 _ => text(place),
             };
-            Hover { span, code, value: None, doc: String::new(), colour: None }
+            Hover { span, code, value: shown, doc: String::new(), colour: colour(analysis, place) }
         }
     })?;
     hover.span = span;
-    Some(hover)
+    Some(match ty {
+        Type::Function(_) => called(analysis, hover),
+        _ => hover,
+    })
 }
 
 fn of_statement(analysis: &Analysis, statement: &Statement, ty: &Type) -> Hover {
@@ -163,8 +186,12 @@ fn colour(analysis: &Analysis, place: Span) -> Option<[f64; 3]> {
         Some(Seen::Color(color)) => Some(say::displayed(*color)),
         Some(_) => None,
         None => {
-            let digits = analysis.sources.text(place).strip_prefix('#')?;
-            color::from_hex(digits).map(say::displayed)
+            let text = analysis.sources.text(place);
+            let written = match analysis.meaning(place) {
+                Some(Meaning::Color(_)) => color::named(text),
+                _ => text.strip_prefix('#').and_then(color::from_hex),
+            };
+            written.map(say::displayed)
         }
     }
 }

@@ -32,6 +32,7 @@ mod symbols;
 mod tokens;
 mod typing;
 mod walk;
+mod wanted;
 
 pub use answers::*;
 pub use complete::complete;

@@ -1,6 +1,6 @@
 //! How types, values and fields are said in a few words.
 
-use crate::check::{Declared, Type, describe_wanted};
+use crate::check::{Declared, Function, Type, Way, describe_wanted};
 use crate::color::{Rgb, encode_srgb};
 use crate::eval::Seen;
 use crate::math::DVec3;
@@ -76,6 +76,27 @@ pub(super) fn ty(ty: &Type) -> String {
     }
 }
 
+/// A way to call a built-in function, with the types of what it takes and gives: `sin(angle) -> number`.
+pub(super) fn way(function: Function, way: &Way) -> String {
+    format!("{}({}) -> {}", function.name(), taken(function, way).join(", "), way.gives)
+}
+
+/// What is taken in one way to call a function, as it stands in [`way`]. What is called as its type is not said twice, but where
+/// the name is written.
+pub(super) fn taken(function: Function, way: &Way) -> Vec<String> {
+    let named = function == Function::Turn;
+    let taken = way.takes.iter().map(|(name, ty)| match *name == *ty && !named || *name == "…" {
+        true => name.to_string(),
+        false => format!("{name}: {ty}"),
+    });
+    taken.collect()
+}
+
+/// All ways to call a built-in function, a line each.
+pub(super) fn ways(function: Function) -> String {
+    function.ways().iter().map(|found| way(function, found)).collect::<Vec<_>>().join("\n")
+}
+
 /// A value as the language writes it, in a unit that suits its size; none of what it has no writing for.
 pub(super) fn value(seen: &Seen, ty: Option<&Type>) -> Option<String> {
     let dim = match ty {
@@ -94,8 +115,12 @@ pub(super) fn value(seen: &Seen, ty: Option<&Type>) -> Option<String> {
         }
         Seen::Bool(value) => value.to_string(),
         Seen::Text(text) => format!("{text:?}"),
-        // What is brighter than white, or no mixture of the three, is shown as near as can be, but not written.
-        Seen::Color(color) if (color.min_element() < 0.0) || (color.max_element() > 1.0) => return None,
+        // What is brighter than white is written in numbers; what is no mixture of the three, not at all.
+        Seen::Color(color) if color.min_element() < 0.0 => return None,
+        Seen::Color(color) if color.max_element() > 1.0 => {
+            let channel = |x: f64| number((x * 1e3).round() / 1e3);
+            format!("rgb({}, {}, {})", channel(color.x), channel(color.y), channel(color.z))
+        }
         Seen::Color(color) => hex(displayed(*color)),
         Seen::List(1) => "1 item".into(),
         Seen::List(count) => format!("{count} items"),

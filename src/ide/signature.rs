@@ -6,12 +6,13 @@ use super::lex::{Lexeme, lex};
 use super::typing::{Typing, typing};
 use super::walk::Declared;
 use super::{Parameter, Signature, Stop, say};
-use crate::check::{Function, Kind, Meaning, describe_wanted, texture_parameters};
+use crate::check::{Declared as Wanted, Function, Kind, Meaning, Way, texture_parameters};
 use crate::eval::Limits;
 use crate::files::Files;
 use crate::source::Source;
 use crate::span::Span;
 use crate::syntax::ast::StatementKind;
+use smol_str::SmolStr;
 
 /// The ways to call or make what is being called or made around a byte of a text, which may be unfinished there.
 pub fn signatures(
@@ -38,30 +39,37 @@ pub fn signatures(
     }
     typing(files, source, &cursor, limits, stop, |typing| match called {
         true => declared(typing, by, &inside).into_iter().collect(),
-        false => part(typing, &inside).into_iter().collect(),
+        false => made(typing, &inside).into_iter().collect(),
     })
 }
 
 /// What stands between the bracket and the cursor.
-struct Inside {
+#[derive(Default)]
+pub(super) struct Inside {
     /// How many commas.
-    commas: usize,
+    pub(super) commas: usize,
     /// The name before the last `:`, behind the last separator.
-    name: Option<String>,
+    pub(super) name: Option<String>,
+    /// The names before a `:` of what stands before that.
+    pub(super) named: Vec<String>,
+    /// Whether nothing stands behind the last separator.
+    pub(super) begins: bool,
 }
 
 impl Inside {
-    fn of(text: &str, open: usize, at: usize) -> Inside {
-        let mut inside = Inside { commas: 0, name: None };
+    pub(super) fn of(text: &str, open: usize, at: usize) -> Inside {
+        let mut inside = Inside { begins: true, ..Inside::default() };
         let (mut depth, mut last) = (0usize, None);
         for (lexeme, range) in lex(&text[..at.max(open)], open + 1) {
             let piece = &text[range];
+            inside.begins &= matches!(lexeme, Lexeme::Line | Lexeme::Comment);
             match (lexeme, piece) {
                 (Lexeme::Mark, "(" | "[" | "{") => depth += 1,
                 (Lexeme::Mark, ")" | "]" | "}") => depth = depth.saturating_sub(1),
                 (Lexeme::Mark, ",") | (Lexeme::Line, _) if depth == 0 => {
                     inside.commas += usize::from(piece == ",");
-                    inside.name = None;
+                    inside.named.extend(inside.name.take());
+                    inside.begins = true;
                 }
                 (Lexeme::Mark, ":") if depth == 0 => inside.name = last.take(),
                 (Lexeme::Word, word) if depth == 0 => last = Some(word.to_string()),
@@ -72,9 +80,9 @@ impl Inside {
     }
 
     /// Which of some names the cursor is at.
-    fn active(&self, names: &[String], variadic: bool) -> Option<usize> {
+    fn active(&self, names: &[impl AsRef<str>], variadic: bool) -> Option<usize> {
         if let Some(name) = &self.name {
-            return names.iter().position(|known| known == name);
+            return names.iter().position(|known| known.as_ref() == name);
         }
         let last = names.len().checked_sub(1)?;
         if variadic { Some(self.commas.min(last)) } else { Some(self.commas).filter(|index| *index <= last) }
@@ -83,33 +91,21 @@ impl Inside {
 
 /// Each way to call a built-in function.
 fn built_in(function: Function, inside: &Inside) -> Vec<Signature> {
-    let ways = function.signature().replace("), ", ") or ");
     let fields = texture_parameters(function).unwrap_or(&[]);
-    let way = |label: &str| {
-        let names = taken(label);
-        let variadic = names.last().is_some_and(|last| last == "…");
-        let shown: Vec<String> =
-            names.iter().map(|name| name.split(':').next().unwrap_or(name).to_string()).collect();
+    let way = |way: &Way| {
+        let names: Vec<&str> = way.takes.iter().map(|(name, _)| *name).collect();
         let doc = |name: &str| {
-            let field = fields.iter().find(|field| field.name == name);
-            field
-                .map(|field| format!("{}. {}", describe_wanted(field.ty), say::paragraph(field.doc)))
-                .unwrap_or_default()
+            let field = fields.iter().find(|field| name.split(':').next() == Some(field.name));
+            field.map(say::field).unwrap_or_default()
         };
-        let active = inside.active(&shown, variadic);
+        let active = inside.active(&names, names.last() == Some(&"…"));
         let doc_of_all = if fields.is_empty() { function_doc(function) } else { function.doc().into() };
-        signature(label, doc_of_all, &names, doc, active)
+        signature(&say::way(function, way), doc_of_all, &say::taken(function, way), doc, active)
     };
-    let mut found: Vec<Signature> = ways.split(" or ").map(way).collect();
+    let mut found: Vec<Signature> = function.ways().iter().map(way).collect();
     // Those come first that still take what is being written.
     found.sort_by_key(|signature| signature.active.is_none());
     found
-}
-
-/// What stands between the parentheses of a label.
-fn taken(label: &str) -> Vec<String> {
-    let inner = label.split_once('(').map_or("", |(_, rest)| rest.split(')').next().unwrap_or(""));
-    inner.split(", ").filter(|name| !name.is_empty()).map(str::to_string).collect()
 }
 
 /// A signature whose label holds its parameters, in order.
@@ -154,21 +150,36 @@ fn declared(typing: &Typing, name: std::ops::Range<usize>, inside: &Inside) -> O
     found.flatten()
 }
 
-/// The part whose body the cursor is in.
-fn part(typing: &Typing, inside: &Inside) -> Option<Signature> {
-    let Kind::Part(id) = typing.body()?.kind else { return None };
-    let part = typing.program.part(id);
+/// The part or the built-in kind whose body the cursor is in.
+fn made(typing: &Typing, inside: &Inside) -> Option<Signature> {
     let head = typing.cursor.opened_by.clone().map_or("", |by| &typing.analysis.source().text[by]);
-    let title = if part.name.is_empty() { head } else { part.name.as_str() };
-    let params: Vec<String> =
-        part.params.iter().map(|param| format!("{}: {}", param.name, param.declared.written())).collect();
-    let label = format!("{title} {{ {} }}", params.join(", "));
-    let doc_of = |shown: &str| {
-        let param = part.params.iter().find(|param| shown.starts_with(&format!("{}:", param.name)));
-        param.and_then(|param| param.doc.as_ref()).map(|doc| doc.to_string()).unwrap_or_default()
+    let (title, doc, fields) = match typing.body()?.kind {
+        Kind::Part(id) => {
+            let part = typing.program.part(id);
+            let doc = |doc: &Option<SmolStr>| doc.as_ref().map(|doc| doc.to_string()).unwrap_or_default();
+            let params = part.params.iter();
+            let fields: Vec<_> =
+                params.map(|param| (param.name.clone(), param.declared.written(), doc(&param.doc))).collect();
+            (if part.name.is_empty() { head } else { part.name.as_str() }, doc(&part.doc), fields)
+        }
+        Kind::BuiltIn(kind) => {
+            let written = |ty| Some(Wanted::Field(ty).written()).filter(|ty| ty != "?").unwrap_or_default();
+            let own = kind.get().fields.iter();
+            let fields = own.map(|field| (field.name.into(), written(field.ty), say::field(field))).collect();
+            (kind.get().name, say::paragraph(kind.get().doc), fields)
+        }
+        Kind::Thing | Kind::Material => return None,
     };
-    let active =
-        inside.name.as_ref().and_then(|name| part.params.iter().position(|param| param.name == *name));
-    let doc = part.doc.as_ref().map(|doc| doc.to_string()).unwrap_or_default();
-    Some(signature(&label, doc, &params, doc_of, active))
+    let shown = |(name, ty, _): &(SmolStr, String, String)| match ty.is_empty() {
+        true => name.to_string(),
+        false => format!("{name}: {ty}"),
+    };
+    let shown: Vec<String> = fields.iter().map(shown).collect();
+    let label = format!("{title} {{ {} }}", shown.join(", "));
+    let doc_of = |piece: &str| {
+        let field = fields.iter().zip(&shown).find(|(_, shown)| *shown == piece);
+        field.map(|((.., doc), _)| doc.clone()).unwrap_or_default()
+    };
+    let active = inside.name.as_ref().and_then(|name| fields.iter().position(|(known, ..)| known == name));
+    Some(signature(&label, doc, &shown, doc_of, active))
 }

@@ -7,7 +7,8 @@
 //!
 //! A line end does not separate inside parentheses, behind an operator, `=`, `:` or a prefix such as `@off`, and
 //! before a line that starts with `->` or a binary operator other than `-`, with a word that goes on with a statement such
-//! as `else`, with `.member` or with `{`.
+//! as `else`, with `.member` or with `{`. Where a line is left unfinished and the next one, which is not indented deeper, begins
+//! a statement, it does: the value is missing.
 
 mod brackets;
 mod habits;
@@ -154,6 +155,8 @@ struct Gap {
     end: usize,
     first_newline: Option<usize>,
     comment: bool,
+    /// Column at which the line before it begins.
+    indent: usize,
 }
 
 struct Cutter<'t> {

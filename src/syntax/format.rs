@@ -2,8 +2,9 @@
 //!
 //! A body whose `{` ends its line has one entry a line, without commas; another body stays on its line if it fits
 //! in [`WIDTH`] columns. Longer values are broken before operators and inside parentheses. Numbers, texts and
-//! comments stay as they are written, and so does the group that a blank line sets off. `print` makes a document of
-//! the tree and of the comments between its tokens, `doc` lays it out.
+//! comments stay as they are written, and so does the group that a blank line sets off. Lines end as the first one does, and a
+//! mark that tells the encoding stays. `print` makes a document of the tree and of the comments between its tokens, `doc` lays it
+//! out.
 
 mod doc;
 mod print;
@@ -22,12 +23,12 @@ pub const WIDTH: usize = 100;
 /// Enough for the deepest tree.
 const STACK: usize = 64 << 20;
 
-/// Formats a text. Top-level items with a slip stay byte for byte as they are; the slips are given beside the
+/// Formats a text. Top-level items with a slip stay as they are, but for line ends; the slips are given beside the
 /// text, with their places in the text as it was.
 pub fn format(source: SourceId, text: &str) -> (String, Vec<Diagnostic>) {
     let work = || {
         let (file, slips) = parse(source, text);
-        let formatted = print(&file, text, &slips);
+        let formatted = as_begun(&print(&file, text, &slips), text);
         // What stands beside a broken item might decide how it is read.
         let kept = slips.is_empty() || {
             let (again, left) = parse(source, &formatted);
@@ -40,6 +41,14 @@ pub fn format(source: SourceId, text: &str) -> (String, Vec<Diagnostic>) {
         let handle = thread.spawn_scoped(scope, work).expect("the system has a thread to spare");
         handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })
+}
+
+/// The text with the mark of its encoding and the line ends of another: those of its first line, where they are mixed.
+fn as_begun(formatted: &str, text: &str) -> String {
+    let mark = if cut::after_marks(text) > 0 { "\u{feff}" } else { "" };
+    let returns = text.split_once('\n').is_some_and(|(line, _)| line.ends_with('\r'));
+    let lines: Vec<&str> = formatted.split('\n').map(|line| line.trim_end_matches('\r')).collect();
+    format!("{mark}{}", lines.join(if returns { "\r\n" } else { "\n" }))
 }
 
 fn is_alike(before: &[Diagnostic], after: &[Diagnostic]) -> bool {

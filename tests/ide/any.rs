@@ -3,6 +3,7 @@
 use super::{analysed, root};
 use crate::fuzz::texts;
 use proptest::prelude::*;
+use rt_lang::check::Function;
 use rt_lang::diagnostic::Severity;
 use rt_lang::eval::Limits;
 use rt_lang::files::FilePath;
@@ -91,6 +92,51 @@ fn kinds_are_offered_with_values_that_fit() {
         }
     }
     assert!(tried > 15, "{tried}");
+}
+
+/// What is said of the types of what the built-in functions take and give is so.
+#[test]
+fn built_in_functions_take_what_is_said_of_them() {
+    let value = |ty: &str| match ty {
+        "angle" => "30deg",
+        "quantity" => "4m2",
+        "triple" => "(1, 2, 3)m",
+        "vector" => "(1, 2, 3)",
+        "point" | "value" => "(1m, 2m, 3m)",
+        "number" => "0.5",
+        "int" => "3",
+        "color" => "red",
+        "texture" => "checker(red, blue, 1m)",
+        "temperature" => "3000K",
+        "length" => "2m",
+        "thing" => "ball",
+        other => panic!("nobody knows a value of type {other}"),
+    };
+    for function in
+        Function::ALL.iter().filter(|function| !matches!(function, Function::Image | Function::Table))
+    {
+        for way in function.ways() {
+            let named = matches!(function, Function::Turn);
+            let argument = |(name, ty): &(&str, &str)| match named {
+                true => format!("{name}: {}", value(ty)),
+                false => value(ty).to_string(),
+            };
+            let taken: Vec<String> =
+                way.takes.iter().filter(|(name, _)| *name != "…").map(argument).collect();
+            let call = format!("{}({})", function.name(), taken.join(", "));
+            let given = match way.gives {
+                "quantity" | "triple" | "value" | "[value]" | "bounds" => format!("let given = {call}"),
+                ty => format!("param given: {ty} = {call}"),
+            };
+            let text = format!("sphere ball {{ radius: 1m }}\n{given}\n");
+            let analysis = analysed(&root(), "any.rt", &text);
+            let said: Vec<&str> = (analysis.diagnostics.iter())
+                .filter(|said| said.severity() == Severity::Error)
+                .map(|said| &*said.message)
+                .collect();
+            assert!(said.is_empty(), "{text}{said:?}");
+        }
+    }
 }
 
 /// A value that is made of itself would be a cycle.

@@ -5,6 +5,7 @@ use rt_lang::eval::Limits;
 use rt_lang::ide::{self, Analysis, Completion, Edit, Insert, Symbol};
 use rt_lang::source::Sources;
 use rt_lang::span::Span;
+use std::ops::Range;
 
 /// The answer to what is asked of a whole file.
 pub fn whole(analysis: &Analysis, question: &str) -> String {
@@ -54,14 +55,7 @@ pub fn whole(analysis: &Analysis, question: &str) -> String {
                 format!("{} {:?} {:?}", place(&analysis.sources, lens.span), lens.action, lens.camera)
             })
             .collect(),
-        "fixes" => analysis
-            .fixes(all)
-            .iter()
-            .map(|fix| {
-                let code = analysis.diagnostics[fix.diagnostic].code.as_str();
-                format!("{code} {}\n{}", fix.title, edits(&fix.edits))
-            })
-            .collect(),
+        "fixes" => vec![fixes(analysis, all)],
         "format" => vec![edits(&analysis.format(all))],
         other => panic!("nobody knows what `{other}` asks"),
     };
@@ -125,8 +119,17 @@ pub fn at(analysis: &Analysis, at: usize, question: &str) -> String {
             let shown = analysis.selection(at).into_iter().map(|span| format!("{:?}", text(analysis, span)));
             shown.collect::<Vec<_>>().join("\n")
         }
+        "fixes" => fixes(analysis, at..at),
         other => panic!("nobody knows what `{other}` asks"),
     }
+}
+
+fn fixes(analysis: &Analysis, range: Range<usize>) -> String {
+    let shown = analysis.fixes(range).into_iter().map(|fix| {
+        let code = analysis.diagnostics[fix.diagnostic].code.as_str();
+        format!("{code} {}\n{}", fix.title, edits(&fix.edits))
+    });
+    shown.collect::<Vec<_>>().join("\n")
 }
 
 fn symbols(symbol: &Symbol, depth: usize) -> String {

@@ -3,7 +3,8 @@
 // The same as `src/syntax/cut/lines.rs`: a line end separates, save within parentheses and brackets, behind an
 // operator, `=`, `:` or a mark such as `@off`, and before a line that starts with `->`, a binary operator other than
 // `-`, a word that goes on with a statement such as `else`, `.member` or `{`. Which tokens the parser could take tells
-// what stands before the line end.
+// what stands before the line end. Where a value is wanted behind it, no thing begins the next line that is not indented
+// deeper: what stands before is unfinished.
 
 #include "tree_sitter/alloc.h"
 #include "tree_sitter/parser.h"
@@ -22,6 +23,8 @@ static const char *const UNITS[] = {"nm", "um", "mm",  "cm",  "m",    "km", "in"
 typedef struct {
   // Where the line begins behind a line end that does not separate: nothing there touches what stands before.
   uint32_t begins;
+  // The column at which this line begins.
+  uint32_t indent;
 } State;
 
 // No line begins there.
@@ -213,16 +216,41 @@ static bool skip_block(TSLexer *lexer) {
   return lines;
 }
 
-// Whether the line goes on with the next token, behind white space and comments.
-static bool goes_on(TSLexer *lexer) {
+// What the next token says of a line end.
+typedef enum { SEPARATES, GOES_ON_BEHIND, BEGINS_THING } Next;
+
+static void skip_blanks(TSLexer *lexer) {
+  while (is_blank(lexer->lookahead)) advance(lexer);
+}
+
+static void skip_word(TSLexer *lexer) {
+  while (is_word(lexer->lookahead)) advance(lexer);
+  skip_blanks(lexer);
+}
+
+// Whether `{` comes behind the first word of a line, or behind the path that begins there and a name.
+static bool begins_thing(TSLexer *lexer) {
+  skip_blanks(lexer);
+  while (lexer->lookahead == '.') {
+    advance(lexer);
+    skip_word(lexer);
+  }
+  if (is_letter(lexer->lookahead)) skip_word(lexer);
+  return lexer->lookahead == '{';
+}
+
+// Looks at the next token, behind white space and comments; `column` is where it begins.
+static Next next_token(TSLexer *lexer, uint32_t *column) {
   for (;;) {
     while (is_blank(lexer->lookahead) || lexer->lookahead == '\n') advance(lexer);
     int32_t c = lexer->lookahead;
+    *column = lexer->get_column(lexer);
     if (is_letter(c)) {
       char word[LONGEST];
       read_word(lexer, word);
       bool named = lexer->lookahead == ':' || lexer->lookahead == '=';
-      return among(word, GOES_ON, LENGTH(GOES_ON)) && (equal(word, "else") || !named);
+      if (among(word, GOES_ON, LENGTH(GOES_ON)) && (equal(word, "else") || !named)) return GOES_ON_BEHIND;
+      return !equal(word, "if") && begins_thing(lexer) ? BEGINS_THING : SEPARATES;
     }
     if (!lexer->eof(lexer)) advance(lexer);
     int32_t next = lexer->lookahead;
@@ -233,35 +261,47 @@ static bool goes_on(TSLexer *lexer) {
         } else if (next == '*') {
           skip_block(lexer);
         } else {
-          return true;
+          return GOES_ON_BEHIND;
         }
         continue;
       case '+': case '*': case '<': case '>': case '{':
-        return true;
+        return GOES_ON_BEHIND;
       case '|': case '-':
-        return next == '>';
+        return next == '>' ? GOES_ON_BEHIND : SEPARATES;
       case '=': case '!':
-        return next == '=';
+        return next == '=' ? GOES_ON_BEHIND : SEPARATES;
       case '.':
-        return is_letter(next) || next == '_';
+        return is_letter(next) || next == '_' ? GOES_ON_BEHIND : SEPARATES;
       default:
-        return false;
+        return SEPARATES;
     }
   }
+}
+
+// Whether the line goes on with the next token.
+static bool goes_on(TSLexer *lexer) {
+  uint32_t column;
+  return next_token(lexer, &column) == GOES_ON_BEHIND;
 }
 
 static bool line_end(State *state, TSLexer *lexer, const bool *valid, bool recovers) {
   while (is_blank(lexer->lookahead) || lexer->lookahead == '\n') advance(lexer);
   lexer->mark_end(lexer);
   state->begins = lexer->get_column(lexer);
+  uint32_t before = state->indent;
+  // A comment alone on its line does not say how far the line is indented.
+  if (lexer->lookahead != '/') state->indent = state->begins;
   bool inside = !recovers && (valid[CLOSES_PARENTHESIS] || valid[CLOSES_BRACKET]);
-  bool joined = inside || goes_on(lexer);
+  uint32_t column = 0;
+  Next next = inside ? GOES_ON_BEHIND : next_token(lexer, &column);
+  bool joined = next == GOES_ON_BEHIND;
   if (valid[NEWLINE] && !joined) {
     lexer->result_symbol = NEWLINE;
     return true;
   }
+  bool unfinished = next == BEGINS_THING && column <= before && !valid[MARK];
   lexer->result_symbol = JOINED;
-  return valid[JOINED] && (joined || valid[OPEN] || valid[MARK]);
+  return valid[JOINED] && (joined || (valid[OPEN] && !unfinished) || valid[MARK]);
 }
 
 // A comma with a text or a parenthesis behind it, which begin no entry.
@@ -319,7 +359,7 @@ bool tree_sitter_rt_external_scanner_scan(void *payload, TSLexer *lexer, const b
 
 void *tree_sitter_rt_external_scanner_create(void) {
   State *state = ts_malloc(sizeof(State));
-  if (state) state->begins = NOWHERE;
+  if (state) *state = (State){NOWHERE, 0};
   return state;
 }
 
@@ -327,14 +367,15 @@ void tree_sitter_rt_external_scanner_destroy(void *payload) { ts_free(payload); 
 
 unsigned tree_sitter_rt_external_scanner_serialize(void *payload, char *buffer) {
   const State *state = payload;
-  for (unsigned i = 0; i < sizeof(state->begins); i++) buffer[i] = (char)(state->begins >> 8 * i);
-  return sizeof(state->begins);
+  const uint32_t kept[] = {state->begins, state->indent};
+  for (unsigned i = 0; i < sizeof(kept); i++) buffer[i] = (char)(kept[i / 4] >> 8 * (i % 4));
+  return sizeof(kept);
 }
 
 void tree_sitter_rt_external_scanner_deserialize(void *payload, const char *buffer, unsigned length) {
   State *state = payload;
-  state->begins = length < sizeof(state->begins) ? NOWHERE : 0;
-  for (unsigned i = 0; length >= sizeof(state->begins) && i < sizeof(state->begins); i++) {
-    state->begins |= (uint32_t)(unsigned char)buffer[i] << 8 * i;
-  }
+  uint32_t kept[] = {0, 0};
+  bool known = length >= sizeof(kept);
+  for (unsigned i = 0; known && i < sizeof(kept); i++) kept[i / 4] |= (uint32_t)(unsigned char)buffer[i] << 8 * (i % 4);
+  *state = known ? (State){kept[0], kept[1]} : (State){NOWHERE, 0};
 }

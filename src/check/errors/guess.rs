@@ -10,24 +10,35 @@ const MAX_GUESSED: usize = 64;
 /// From so many letters on a name may have two slips of typing.
 const LONG: usize = 8;
 
+/// So many names are offered where none is certain.
+const OFFERED: usize = 3;
+
 /// Up to so many letters another letter makes another word.
 const SHORT: usize = 3;
 
 /// The name that another probably means.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::check) struct Guess<'a> {
     /// What is probably meant.
     pub(in crate::check) name: &'a str,
     /// Whether it is a slip of typing and no other name is as near, so that it can be mended blindly. Another name
     /// that merely lies near would silently make another picture.
     pub(in crate::check) certain: bool,
+    /// The nearest names, it first.
+    pub(in crate::check) near: Vec<&'a str>,
 }
 
 impl Guess<'_> {
     /// Asks whether this was meant; `sign` is what stands before it.
     pub(in crate::check) fn ask(self, diagnostic: Diagnostic, span: Span, sign: &str) -> Diagnostic {
         let diagnostic = diagnostic.help(format!("did you mean `{sign}{}`?", self.name));
-        if self.certain { diagnostic.fix(span, self.name) } else { diagnostic }
+        if self.certain {
+            return diagnostic.fix(span, self.name);
+        }
+        let offer = |diagnostic: Diagnostic, name: &&str| {
+            diagnostic.offer(format!("replace it with `{sign}{name}`"), vec![(span, name.to_string())])
+        };
+        self.near.iter().fold(diagnostic, offer)
     }
 }
 
@@ -49,14 +60,21 @@ pub(in crate::check) fn closest<'a>(name: &str, candidates: &[&'a str]) -> Optio
         let distance = if candidate.to_lowercase() == lower { 0 } else { distance };
         (distance, name.chars().next() != candidate.chars().next(), *candidate)
     });
-    let near: Vec<(usize, bool, &str)> = near.filter(|(distance, ..)| *distance <= limit).collect();
+    let mut near: Vec<(usize, bool, &str)> = near.filter(|(distance, ..)| *distance <= limit).collect();
     // Of two that are as far, the one with all the letters that were written is the likelier.
     let rank = |(distance, other_start, candidate): &(usize, bool, &'a str)| {
         (*distance, *other_start, Reverse(is_within(&lower, candidate)))
     };
-    let (distance, _, found) = near.iter().min_by_key(|near| rank(near)).copied()?;
+    near.sort_by_key(rank);
+    let (distance, _, found) = near.first().copied()?;
     let alone = near.iter().all(|(other, _, name)| *other > distance || *name == found);
-    Some(Guess { name: found, certain: alone && is_slip(name, found, distance) })
+    let mut names: Vec<&str> = vec![];
+    for (_, _, name) in near {
+        if names.len() < OFFERED && !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    Some(Guess { name: found, certain: alone && is_slip(name, found, distance), near: names })
 }
 
 /// Whether names that differ in so many letters are one, with a slip of typing: a letter left out, doubled, taken for
@@ -98,7 +116,7 @@ mod tests {
     #[test]
     fn only_what_is_clearly_nearest_is_certain() {
         let certain = |name, candidates: &[&'static str]| {
-            closest(name, candidates).map(|Guess { name, certain }| (name, certain))
+            closest(name, candidates).map(|Guess { name, certain, .. }| (name, certain))
         };
         assert_eq!(certain("raduis", &["radius", "at"]), Some(("radius", true)));
         assert_eq!(certain("Radius", &["radius"]), Some(("radius", true)));
@@ -111,5 +129,7 @@ mod tests {
         assert_eq!(certain("hsl", &["hsv"]), Some(("hsv", false)));
         assert_eq!(certain("m2m", &["mm"]), Some(("mm", false)));
         assert_eq!(certain("x", &["y"]), None);
+        let near = closest("tall", &["ball", "tail", "hall", "box"]).map(|guess| guess.near);
+        assert_eq!(near, Some(vec!["tail", "ball", "hall"]));
     }
 }

@@ -1,13 +1,13 @@
 //! Values, and what stands inside them.
 
-use super::entries::doc_of;
+use super::entries::{doc_of, example};
 use super::{List, Rank, detail_of, kind_of};
-use crate::check::{Declared, Function, Kind, Making, Type, texture_parameters};
+use crate::check::{Declared, Function, Kind, Making, Type, describe_wanted, texture_parameters};
 use crate::color;
 use crate::ide::hover::function_doc;
 use crate::ide::typing::Typing;
 use crate::ide::walk::Declared as Place;
-use crate::ide::{CompletionKind, Insert, say};
+use crate::ide::{Completion, CompletionKind, Insert, say};
 use crate::schema::{Category, FieldType, KINDS, PLACED};
 use crate::span::Span;
 use crate::syntax::ast::StatementKind;
@@ -15,12 +15,23 @@ use crate::syntax::ast::StatementKind;
 impl List<'_> {
     /// What can be the value of a field, or of anything.
     pub(super) fn value(&mut self, typing: &Typing, field: Option<&str>) {
-        let kind = typing.body().map(|body| body.kind);
-        let wanted = match (field, kind) {
-            (Some("material"), None) => Some(Declared::Field(FieldType::Made(Category::Material))),
-            (Some(field), Some(kind)) => typing.wanted(kind, field),
-            _ => None,
-        };
+        let call = typing.call();
+        if let Some(call) = &call {
+            if call.is_full() {
+                return;
+            }
+            if call.wants_axis() {
+                return ["x", "y", "z"]
+                    .iter()
+                    .for_each(|axis| self.argument(axis, "‹45deg›").detail = "angle".into());
+            }
+            for field in call.nameable() {
+                let argument = self.argument(field.name, &example(field));
+                argument.detail = describe_wanted(field.ty);
+                argument.doc = say::field(field);
+            }
+        }
+        let wanted = typing.wanted_here(field);
         let ty = match &wanted {
             Some(Declared::Field(ty)) => Some(*ty),
             _ => None,
@@ -33,16 +44,30 @@ impl List<'_> {
         if ty.is_some_and(closed) {
             return;
         }
-        self.functions(ty);
-        if ty.is_none() {
+        self.functions(wanted.as_ref());
+        if wanted.is_none() {
             self.colours(Rank::Seldom);
-            for kind in KINDS.iter().filter(|kind| kind.category != Category::Block) {
-                self.kind(kind.name, Rank::Rather);
-            }
+            // No function takes a thing that is made on the spot.
+            let made = KINDS.iter().filter(|kind| kind.category != Category::Block && call.is_none());
+            made.for_each(|kind| self.kind(kind.name, Rank::Rather));
             ["true", "false"].iter().for_each(|word| self.word(word));
+        }
+        if wanted == Some(Declared::Thing) && call.is_none() {
+            let placed = |category| matches!(category, Category::Shape | Category::Group);
+            KINDS
+                .iter()
+                .filter(|kind| placed(kind.category))
+                .for_each(|kind| self.kind(kind.name, Rank::May));
         }
         self.push("if", CompletionKind::Keyword, Rank::Seldom).insert =
             Insert::with_holes("if ‹true› then ‹1› else ‹0›");
+    }
+
+    /// The name of an argument, and an example of it.
+    fn argument(&mut self, name: &str, example: &str) -> &mut Completion {
+        let completion = self.push(name, CompletionKind::Field, Rank::Fits);
+        completion.insert = Insert::with_holes(&format!("{name}: {example}"));
+        completion
     }
 
     /// What a type itself offers.
@@ -85,6 +110,15 @@ impl List<'_> {
                 // Nothing is made of itself.
                 _ if place.source == typing.analysis.main && own == Some(place.range().start) => continue,
                 (None, Type::File(_)) => Rank::Rather,
+                (Some(wanted), Type::Function(id)) => {
+                    let result = typing.program.functions[id.index()].result.ty();
+                    match wanted.accepts(&result) {
+                        true => Rank::Fits,
+                        false if leads_to(&result, wanted) => Rank::Rather,
+                        false => continue,
+                    }
+                }
+                (Some(Declared::Thing), Type::Thing(_)) => Rank::Fits,
                 (Some(wanted), ty) if wanted.accepts(ty) && *ty != Type::Invalid => Rank::Fits,
                 (Some(wanted), ty) if leads_to(ty, wanted) => Rank::Rather,
                 (Some(_), _) => continue,
@@ -99,13 +133,21 @@ impl List<'_> {
         }
     }
 
-    fn functions(&mut self, wanted: Option<FieldType>) {
+    /// The built-in functions that give what is wanted, or may be part of an expression that does.
+    fn functions(&mut self, wanted: Option<&Declared>) {
         for &function in Function::ALL {
-            let rank =
-                if wanted.is_some_and(|wanted| gives(function, wanted)) { Rank::May } else { Rank::Rather };
+            let rank = match wanted {
+                None => Rank::Rather,
+                Some(Declared::Field(ty)) if gives(function, *ty) => Rank::May,
+                Some(Declared::Field(ty)) if is_computed(*ty) && is_numeric(function) => Rank::Rather,
+                Some(Declared::List(_)) if function.ways().iter().any(|way| way.gives.starts_with('[')) => {
+                    Rank::May
+                }
+                Some(_) => continue,
+            };
             let completion = self.push(function.name(), CompletionKind::Function, rank);
             completion.insert = Insert::with_holes(&built_in_call(function));
-            completion.detail = function.signature().into();
+            completion.detail = say::ways(function).lines().next().unwrap_or("").into();
             completion.doc = function_doc(function);
         }
     }
@@ -217,18 +259,31 @@ fn inside(typing: &Typing, ty: &Type) -> Vec<(String, Span, Type)> {
 
 /// Whether a value of a type may be part of an expression that gives what is wanted.
 fn leads_to(ty: &Type, wanted: &Declared) -> bool {
-    let computed = |wanted: &FieldType| {
-        matches!(wanted, FieldType::Scalar(_) | FieldType::Int | FieldType::Tuple(..) | FieldType::Bool)
-    };
     match (wanted, ty) {
         (Declared::Field(FieldType::Choice(_) | FieldType::Named(_) | FieldType::Text), _) => false,
-        (_, Type::Invalid | Type::Function(_) | Type::List(_) | Type::Row(_) | Type::File(_)) => true,
-        (Declared::Field(FieldType::OneOf(types)), _) => types.iter().any(computed),
+        (_, Type::Invalid | Type::List(_) | Type::Row(_) | Type::File(_)) => true,
+        // `0 to count`
+        (Declared::List(_), Type::Scalar(_)) => true,
         (Declared::Field(wanted), Type::Scalar(_) | Type::Tuple(..) | Type::Bool | Type::Thing(_)) => {
-            computed(wanted)
+            is_computed(*wanted)
         }
         _ => false,
     }
+}
+
+/// Whether what is wanted is computed with operators.
+fn is_computed(wanted: FieldType) -> bool {
+    match wanted {
+        FieldType::Scalar(_) | FieldType::Int | FieldType::Tuple(..) | FieldType::Bool => true,
+        FieldType::OneOf(types) => types.iter().any(|ty| is_computed(*ty)),
+        _ => false,
+    }
+}
+
+/// Whether a function gives a number, several of them, or what has such parts.
+fn is_numeric(function: Function) -> bool {
+    let gives = |gives: &str| !matches!(gives, "color" | "texture" | "transform") && !gives.starts_with('[');
+    function.ways().iter().all(|way| gives(way.gives))
 }
 
 /// Whether a function may well give what is wanted.
@@ -242,8 +297,7 @@ fn gives(function: Function, wanted: FieldType) -> bool {
         FieldType::Transform => matches!(function, Scale | Turn | Move | Matrix),
         FieldType::OneOf(types) => types.iter().any(|ty| gives(function, *ty)),
         FieldType::Scalar(_) | FieldType::Int | FieldType::Tuple(..) | FieldType::IntTuple(_) => {
-            !matches!(function, Rgb | Srgb | Hsv | Blackbody | Scale | Turn | Move | Matrix | Table | Range)
-                && texture_parameters(function).is_none()
+            is_numeric(function)
         }
         _ => false,
     }

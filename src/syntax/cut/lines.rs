@@ -8,7 +8,8 @@ use crate::span::Span;
 impl<'t> Cutter<'t> {
     /// Skips white space and comments.
     pub(super) fn gap(&mut self) -> Gap {
-        let mut gap = Gap { start: self.at, end: self.at, first_newline: None, comment: false };
+        let mut gap =
+            Gap { start: self.at, end: self.at, first_newline: None, comment: false, indent: self.indent };
         let mut line = None;
         while let Some(&byte) = self.bytes.get(self.at) {
             match byte {
@@ -91,7 +92,7 @@ impl<'t> Cutter<'t> {
             }
             return self.separate(gap, newline);
         }
-        if self.joins() {
+        if self.joins(gap) {
             self.edits.push((gap.start..gap.end, b' '));
         } else if self.levels.is_empty() && self.splits {
             self.finish();
@@ -113,13 +114,15 @@ impl<'t> Cutter<'t> {
     }
 
     /// Whether the line goes on over the line end before the next token.
-    fn joins(&self) -> bool {
+    fn joins(&self, gap: &Gap) -> bool {
         if matches!(self.innermost(), b'(' | b'[') || self.beyond > 0 {
             return true;
         }
         match self.last {
             Last::Prefix => true,
-            Last::Operator | Last::Definer => !self.begins_field() && !self.begins_statement(),
+            Last::Operator | Last::Definer => {
+                !self.begins_field() && !self.begins_statement() && !self.begins_beside(gap)
+            }
             Last::Operand | Last::Open => match (self.byte(self.at), self.byte(self.at + 1)) {
                 (b'+' | b'*' | b'/' | b'<' | b'>' | b'{', _) => true,
                 (b'|' | b'-', b'>') | (b'=' | b'!', b'=') => true,
@@ -187,15 +190,32 @@ impl<'t> Cutter<'t> {
                 self.word_and_next(next).is_some_and(|(name, _)| !matches!(name, "and" | "or" | "to"))
             }
             "import" => self.byte(next) == b'"',
+            "assert" => true,
             _ => false,
         }
     }
 
-    /// `kind {`, `kind name {`, `name =`, `let name` and the like
+    /// Whether the line begins a statement, and no value of what the line before leaves unfinished: it is not indented deeper.
+    fn begins_beside(&self, gap: &Gap) -> bool {
+        let is_beside = self.indent <= gap.indent;
+        if self.word(self.at) == "if" {
+            let line = self.text[self.at..].split('\n').next().unwrap_or("");
+            let is_statement = line.contains('{') && !line.contains("then");
+            return is_beside && is_statement && !self.text[..self.end].ends_with("else");
+        }
+        is_beside && self.begins_item()
+    }
+
+    /// `kind {`, `kind name {`, `file.kind {`, `name =`, `let name` and the like
     fn begins_item(&self) -> bool {
-        let Some((word, next)) = self.word_and_next(self.at) else { return false };
+        let Some((word, mut next)) = self.word_and_next(self.at) else { return false };
         if self.goes_on() {
             return false;
+        }
+        while self.byte(next) == b'.'
+            && let Some((_, behind)) = self.word_and_next(next + 1)
+        {
+            next = behind;
         }
         let opens = |at| matches!(self.byte(at), b'{' | b'=') && self.byte(at + 1) != b'=';
         match self.word_and_next(next) {
@@ -216,9 +236,7 @@ impl<'t> Cutter<'t> {
     /// Where braces are known not to match, whether the line begins a thing beside the one whose body is still open, and
     /// not in it: it is indented as far.
     fn shows_unclosed_body(&self) -> bool {
-        let beside = |level: &&Level| {
-            level.bracket == b'{' && level.indent == self.indent && self.end > level.at + 1 && self.indent > 0
-        };
+        let beside = |level: &&Level| level.bracket == b'{' && level.indent == self.indent && self.indent > 0;
         let around = self.levels.len().checked_sub(2).map(|index| &self.levels[index]);
         self.layout
             && self.levels.last().as_ref().is_some_and(beside)

@@ -281,7 +281,18 @@ fn slips_have_mends_and_warnings_can_be_allowed() {
     assert_eq!(edits(&mends[0]["edit"]), [("a.rt".to_string(), 1, Some(1))]);
     let all = ask(&mut client, json!(["source.fixAll"]));
     assert_eq!((all.as_array().unwrap().len(), &all[0]["kind"]), (1, &json!("source.fixAll")));
-    client.replace("a.rt", 2, "sphere { radius: 8mm }\nlet spare = 1m\n");
+    // What shows only behind another mend is mended as well: `=` hides that nothing is called `raduis`.
+    let slips = "sphere { raduis = 8 mm }\r\nlet spare = 1m\r\n";
+    client.replace("a.rt", 2, slips);
+    let all = ask(&mut client, json!(["source.fixAll"]));
+    let edit = &all[0]["edit"]["documentChanges"][0]["edits"][0];
+    assert_eq!(edit["newText"], "sphere { radius: 8mm }\r\n");
+    let automatic = json!({ "diagnostics": [], "triggerKind": 2 });
+    let params = about(&client, "a.rt", json!({ "range": whole, "context": automatic }));
+    let offered = client.ask("textDocument/codeAction", params).unwrap();
+    let offered: Vec<&Value> = offered.as_array().unwrap().iter().map(|one| &one["kind"]).collect();
+    assert!(!offered.is_empty() && offered.iter().all(|kind| **kind == "quickfix"), "{offered:?}");
+    client.replace("a.rt", 3, "sphere { radius: 8mm }\nlet spare = 1m\n");
     let allowed = ask(&mut client, Value::Null);
     let titles: Vec<&str> =
         allowed.as_array().unwrap().iter().filter_map(|one| one["title"].as_str()).collect();

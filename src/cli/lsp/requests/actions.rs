@@ -4,11 +4,14 @@ use super::super::analyst::Meaning;
 use super::super::diagnostics::convert;
 use super::super::documents::Key;
 use super::super::edits::{self, between};
-use super::super::work::{Answer, Asked};
+use super::super::work::{Answer, Asked, Failure};
+use super::super::world::World;
 use gen_lsp_types as lsp;
 use lsp::CodeActionKind as Kind;
-use rt_lang::ide::Fix;
-use rt_lang::mend::mend;
+use rt_lang::analyse;
+use rt_lang::ide::{Analysis, Fix};
+use rt_lang::mend::Rounds;
+use rt_lang::source::Source;
 use std::collections::BTreeMap;
 
 /// The most that is offered at once: nobody reads more, and there may be as many as characters.
@@ -27,8 +30,10 @@ pub fn actions(
         let fixes = meaning.analysis.fixes(meaning.bytes(params.range));
         found.extend(fixes.into_iter().take(MOST).map(|fix| action(fix, &meaning, asked)));
     }
-    if wanted(only, &Kind::SourceFixAll) {
-        found.extend(fix_all(&key, &meaning, asked));
+    // It takes several looks at the text, which is not done each time that the cursor moves.
+    let moved = params.context.trigger_kind == Some(lsp::CodeActionTriggerKind::Automatic);
+    if wanted(only, &Kind::SourceFixAll) && !(only.is_none() && moved) {
+        found.extend(fix_all(&key, &meaning, asked)?);
     }
     Ok(Some(found.into_iter().map(lsp::CodeActionResponse::CodeAction).collect()))
 }
@@ -66,17 +71,34 @@ fn action(fix: Fix, meaning: &Meaning, asked: &Asked) -> lsp::CodeAction {
     }
 }
 
-/// Everything that can be mended at once.
-fn fix_all(key: &Key, meaning: &Meaning, asked: &Asked) -> Option<lsp::CodeAction> {
-    let analysis = &meaning.analysis;
-    let mended = mend(&analysis.source().text, analysis.main, &analysis.diagnostics)?;
-    let edits = between(meaning.text(analysis.main), &mended.text, asked.view.session.encoding);
-    Some(lsp::CodeAction {
-        title: "Mend all that can be mended without a thought".into(),
-        kind: Some(Kind::SourceFixAll),
-        edit: Some(edits::workspace(BTreeMap::from([(key.clone(), edits)]), asked.view)),
-        ..lsp::CodeAction::default()
-    })
+/// Everything that can be mended, also what shows only behind other mends.
+fn fix_all(key: &Key, meaning: &Meaning, asked: &Asked) -> Answer<Option<lsp::CodeAction>> {
+    let (world, options) = (World::around(asked.view, key), asked.view.session.options());
+    let document = asked.view.documents.get(key);
+    let spoilt = || document.and_then(|document| asked.spoilt(document));
+    let stop = || spoilt().is_some();
+    let mut rounds = Rounds::default();
+    let mut again: Option<Analysis> = None;
+    loop {
+        let analysis = again.as_ref().unwrap_or(&meaning.analysis);
+        let source = analysis.source();
+        let Some(mended) = rounds.next(&source.text, analysis.main, &analysis.diagnostics) else { break };
+        let next = Source::new(source.name.clone(), mended.text).at(source.path.clone());
+        again = analyse(&world, next, &options, &stop);
+        if again.is_none() {
+            return Err(spoilt().unwrap_or_else(Failure::cancelled));
+        }
+    }
+    Ok(again.map(|mended| {
+        let before = meaning.text(meaning.analysis.main);
+        let edits = between(before, &mended.source().text, asked.view.session.encoding);
+        lsp::CodeAction {
+            title: "Mend all that can be mended without a thought".into(),
+            kind: Some(Kind::SourceFixAll),
+            edit: Some(edits::workspace(BTreeMap::from([(key.clone(), edits)]), asked.view)),
+            ..lsp::CodeAction::default()
+        }
+    }))
 }
 
 #[cfg(test)]
