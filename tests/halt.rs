@@ -10,7 +10,6 @@ use rt_lang::source::{Source, Sources};
 use rt_lang::{Options, compile};
 
 const SEEDS: u64 = 200;
-const NOISE: f64 = 0.016;
 const SIZE: [u32; 2] = [48, 32];
 
 /// Calm on one side, and a soft shadow of a small lamp on the other, in pale colours.
@@ -59,14 +58,14 @@ struct Told {
     samples: [u32; 2],
 }
 
-fn told(things: &str) -> Told {
+fn told(things: &str, wanted: f64) -> Told {
     let (window, control) = (Window::whole(SIZE), Control::new());
     let mut scene = scene(things);
     scene.trace.seed = 1 << 40;
     let tracer = Tracer::new(&scene);
     let prepass = tracer.prepass();
     let truth = tracer.render(window, Target::Samples(1 << 13), &prepass, SHOWN, &control).unwrap().film;
-    let limits = Limits::from(Target::Noise(NOISE));
+    let limits = Limits::from(Target::Noise(wanted));
     let mut told = Told { samples: [u32::MAX, 0], ..Told::default() };
     let (mut off, mut error) = (0.0, 0.0);
     for seed in 0..SEEDS {
@@ -74,7 +73,7 @@ fn told(things: &str) -> Told {
         let tracer = Tracer::new(&scene);
         let rendered = tracer.render(window, limits, &prepass, SHOWN, &control).unwrap();
         assert_eq!(rendered.limit, Limit::Noise);
-        assert!(rendered.noise <= NOISE);
+        assert!(rendered.noise <= wanted);
         let film = rendered.film;
         for (x, y) in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))) {
             let true_error = (shown(film.mean(x, y)) - shown(truth.mean(x, y))).abs();
@@ -85,7 +84,7 @@ fn told(things: &str) -> Told {
                     *within += f64::from(u8::from(true_error[channel] <= errors * stated[channel]));
                 }
             }
-            told.kept += f64::from(u8::from(true_error.max_element() <= 2.0 * NOISE));
+            told.kept += f64::from(u8::from(true_error.max_element() <= 2.0 * wanted));
             off += luminance(film.mean(x, y) - truth.mean(x, y));
             error += film.error(x, y);
             let [fewest, most] = &mut told.samples;
@@ -100,15 +99,14 @@ fn told(things: &str) -> Told {
 
 #[test]
 fn the_true_error_lies_within_the_stated_one_as_often_as_it_says() {
-    for (name, things) in [("pale", PALE), ("colored", COLORED)] {
-        let told = told(things);
-        println!("{name}: {told:?}");
+    for (name, things, wanted) in [("pale", PALE, 0.016), ("colored", COLORED, 0.03)] {
+        let told = told(things, wanted);
         // Of a normal distribution 68.3 % lie within one standard error, and 95.4 % within two.
         assert!(told.within[0] >= 0.683 && told.within[1] >= 0.954, "{name}: {told:?}");
         assert!(told.kept >= 0.954, "{name}: {told:?}");
         // What is off on average is far below the noise that is stated.
         assert!(told.off.abs() < 0.05, "{name}: {told:?}");
         let [fewest, most] = told.samples;
-        assert!(fewest == 64 && most >= 128, "{name}: {told:?}");
+        assert!(fewest >= 64 && most >= 2 * fewest, "{name}: {told:?}");
     }
 }

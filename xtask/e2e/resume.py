@@ -233,10 +233,11 @@ def asked_to_end(times):
             if time.monotonic() > deadline or child.poll() is not None:
                 sys.exit("SIGUSR1 wrote no checkpoint")
             time.sleep(0.01)
-        before = samples("own")
-        time.sleep(1.2)
+        before, written = samples("own"), os.stat("own").st_mtime_ns
+        time.sleep(0.7)
         code, said = end(child, getattr(signal, name))
-        if code != 130 or samples("own")[1] <= before[1]:
+        fewer = any(own < earlier for own, earlier in zip(samples("own"), before))
+        if code != 130 or fewer or os.stat("own").st_mtime_ns == written:
             sys.exit(f"{name} wrote no checkpoint, or ended with {code}: {said}")
         os.remove("own")
     print(f"  asked to end {times} times while it wrote")
@@ -261,7 +262,8 @@ def full_disk(times):
             left = (0, 200_000, len(kept) // 2, len(kept) - 4096)[number % 4]
             pathlib.Path("filler").write_bytes(bytes(room.f_bavail * room.f_frsize - left))
             if number < 4:
-                said = run("build", "ball.rt", "--samples", 16, *flags, *KEEP, code=2)
+                # The picture is smaller than its exact sums, and goes on without them.
+                said = run("build", "ball.rt", "--samples", 16, *flags, *KEEP, code=2 if left < 300_000 else 0)
                 if "no space left" not in said or "the samples are not kept" not in said:
                     sys.exit(f"the full disk was not told of: {said}")
             else:
