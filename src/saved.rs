@@ -26,10 +26,30 @@ pub const CHANNELS: [&str; WORDS + 1] = [
     "sums.green.1",
     "sums.blue.0",
     "sums.blue.1",
-    "sums.squares.0",
-    "sums.squares.1",
-    "sums.squares.2",
-    "sums.squares.3",
+    "sums.red.red.0",
+    "sums.red.red.1",
+    "sums.red.red.2",
+    "sums.red.red.3",
+    "sums.green.green.0",
+    "sums.green.green.1",
+    "sums.green.green.2",
+    "sums.green.green.3",
+    "sums.blue.blue.0",
+    "sums.blue.blue.1",
+    "sums.blue.blue.2",
+    "sums.blue.blue.3",
+    "sums.red.green.0",
+    "sums.red.green.1",
+    "sums.red.green.2",
+    "sums.red.green.3",
+    "sums.red.blue.0",
+    "sums.red.blue.1",
+    "sums.red.blue.2",
+    "sums.red.blue.3",
+    "sums.green.blue.0",
+    "sums.green.blue.1",
+    "sums.green.blue.2",
+    "sums.green.blue.3",
     "sums.covered.0",
     "sums.covered.1",
     "sums.open.0",
@@ -39,7 +59,7 @@ pub const CHANNELS: [&str; WORDS + 1] = [
 ];
 
 /// The form of these files. Another number is another form.
-const VERSION: &str = "2";
+const VERSION: &str = "3";
 
 // Attributes. Those of the identity have its names behind this.
 const PREFIX: &str = "rtc.saved.";
@@ -206,11 +226,12 @@ fn judged_from(words: &str) -> Option<Shown> {
     Some(Shown { stops, tonemap: Tonemap::from_word(tonemap)? })
 }
 
-/// How a picture came about, with its samples and their noise. One sample a pixel does not tell how noisy it is.
-pub fn judged(facts: Facts, film: &Film, [least, most]: [u32; 2]) -> Facts {
+/// How a picture came about, with the least and the most samples of a pixel and their noise. One sample does not tell how noisy
+/// it is.
+pub fn judged(facts: Facts, film: &Film, samples: [u32; 2]) -> Facts {
     let (stops, tonemap) = (facts.stops.unwrap_or(0.0), facts.tonemap.unwrap_or(Tonemap::Neutral));
-    let noise = (least > 1).then(|| film.noise(stops, tonemap));
-    Facts { samples: Some(u64::from(most)), noise, ..facts }
+    let noise = (samples[0] > 1).then(|| film.noise(stops, tonemap));
+    Facts { samples: Some(samples), noise, ..facts }
 }
 
 /// The picture that sums show.

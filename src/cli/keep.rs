@@ -7,7 +7,7 @@ use super::terminal::Terminal;
 use super::{Problem, input};
 use rt_lang::output::{Facts, MOST_PIXELS};
 use rt_lang::render::making::Making;
-use rt_lang::saved::{CHANNELS, Saved, Subject};
+use rt_lang::saved::{self, CHANNELS, Saved, Subject};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -28,11 +28,6 @@ impl Places {
     /// The same for a frame of a film: where the scene has changed, it is made anew.
     pub fn yielding(self) -> Places {
         Places { yields: true, ..self }
-    }
-
-    /// Whether samples that do not fit are left aside.
-    pub fn is_yielding(&self) -> bool {
-        self.yields
     }
 }
 
@@ -102,9 +97,13 @@ impl<'a> Keeper<'a> {
         Keeper { places, every, subject, facts, interrupt, terminal, held: None, last, complained: false }
     }
 
-    /// The picture to go on with; none where there is nothing to go on from. What differs is an error, and so is a file that
-    /// is damaged, for nobody should lose work by going on without it; and a place where nothing can be kept.
-    pub fn resume(&mut self) -> Result<Option<Making>, Problem> {
+    /// The picture to go on with; none where there is nothing to go on from. What differs is an error, in what `refuses` says
+    /// too; and so is a file that is damaged, for nobody should lose work by going on without it; and a place where nothing
+    /// can be kept.
+    pub fn resume(
+        &mut self,
+        refuses: impl FnOnce(&Making) -> Option<String>,
+    ) -> Result<Option<Making>, Problem> {
         self.held = Some(Aside::hold(&self.places.to, self.interrupt)?);
         drop(Aside::always_beside(&self.places.to, self.interrupt)?);
         let Some((path, must_be)) = &self.places.from else { return Ok(None) };
@@ -121,14 +120,14 @@ impl<'a> Keeper<'a> {
             }
         };
         let saved = Saved::decode(&bytes).map_err(|why| cannot(format!("it {why}")))?;
-        if let Some(why) = self.subject.refuses(&saved.subject) {
-            if self.places.yields {
-                return Ok(None);
+        match self.subject.refuses(&saved.subject).or_else(|| refuses(&saved.making)) {
+            Some(_) if self.places.yields => Ok(None),
+            Some(why) => Err(cannot(why)),
+            None => {
+                self.last.1 = saved.making.mean_samples();
+                Ok(Some(saved.making))
             }
-            return Err(cannot(why));
         }
-        self.last.1 = saved.making.mean_samples();
-        Ok(Some(saved.making))
     }
 
     /// Keeps the samples if it is time, or if that was asked for.
@@ -157,8 +156,7 @@ impl<'a> Keeper<'a> {
 
     fn write(&self, making: &Making) -> Result<(), Problem> {
         let to = &self.places.to;
-        let [_, samples] = making.samples();
-        let facts = Facts { samples: Some(u64::from(samples)), ..self.facts.clone() };
+        let facts = saved::judged(self.facts.clone(), making.film(), making.samples());
         let bytes = self.subject.encode(making, &facts);
         let bytes = bytes.map_err(|why| Problem::new(format!("cannot write `{}`: {why}", to.display())))?;
         write(to, &bytes, self.interrupt)

@@ -64,7 +64,10 @@ pub fn run(arguments: &Merge, terminal: Terminal, interrupt: &Interrupt) -> Resu
 fn add(merging: Option<&mut Merging>, path: &Path) -> Result<Option<Merging>, Problem> {
     let name = path.display().to_string();
     let bytes = input::read_bytes(path, LARGEST)?;
-    let refuse = |why: saved::Refused| Problem::new(format!("`{name}` {why}"));
+    let refuse = |why: saved::Refused| {
+        Problem::new(format!("`{name}` {why}"))
+            .help("make that share again with `--shard I/N`, or leave out what is no share of the picture with `--partial`")
+    };
     let saved = Saved::decode(&bytes).map_err(refuse)?;
     match merging {
         Some(merging) => merging.add(&name, &saved).map(|()| None).map_err(refuse),

@@ -204,26 +204,15 @@ pub fn trace(
         context.interrupt.wait()
     };
     let aovs = &context.arguments.aov;
-    let yields = places.as_ref().is_some_and(Places::is_yielding);
     let every = context.arguments.keeping.checkpoint_every;
     let mut keeper = places.map(|places| {
         Keeper::new(places, every, (&tracing.subject, &tracing.facts), context.interrupt, context.terminal)
     });
     let kept = match &mut keeper {
-        Some(keeper) => keeper.resume()?,
+        Some(keeper) => keeper.resume(|kept| tracing.refuses(kept))?,
         None => None,
     };
     let reused = before.as_mut().and_then(|before| before.samples(&tracing, window));
-    let kept = match kept.map(|kept| (tracing.refuses(&kept), kept)) {
-        Some((Some(_), _)) if yields => None,
-        Some((Some(why), _)) => {
-            let problem = Problem::new(format!("cannot go on from the samples that were kept: {why}"));
-            return Err(problem
-                .help("`--resume=never` begins afresh, `--checkpoint=FILE` keeps the samples elsewhere"));
-        }
-        Some((None, kept)) => Some(kept),
-        None => None,
-    };
     let mut making = kept.or(reused).unwrap_or_else(|| tracing.begin(window));
     if denoises && !making.is_in_halves() {
         making = making.in_halves();
@@ -304,16 +293,16 @@ impl<'a> Tracing<'a> {
     fn refuses(&self, kept: &Making) -> Option<String> {
         let (own, other) = (self.prepass.scale, kept.film().scale());
         if own != other {
-            return Some(format!("their sums are of another scale ({other:e}, not {own:e})"));
+            return Some(format!("its sums are of another scale ({other:e}, not {own:e})"));
         }
         let judged = kept.judged().filter(|judged| self.limits.noise.is_some() && *judged != self.shown)?;
         Some(match judged.stops == self.shown.stops {
             false => format!(
-                "where they are was chosen for another exposure ({}, not {})",
+                "where its samples are was chosen for another exposure ({}, not {})",
                 judged.stops, self.shown.stops
             ),
             true => format!(
-                "where they are was chosen for another tonemap ({}, not {})",
+                "where its samples are was chosen for another tonemap ({}, not {})",
                 judged.tonemap.word(),
                 self.shown.tonemap.word()
             ),

@@ -148,8 +148,8 @@ pub struct Plane {
 pub struct Facts {
     /// The program and its version.
     pub software: String,
-    /// Samples a pixel; where some have fewer, the most.
-    pub samples: Option<u64>,
+    /// The least and the most samples of a pixel.
+    pub samples: Option<[u32; 2]>,
     /// The noise, as a share of white.
     pub noise: Option<f64>,
     /// What it stopped at: samples, noise or time.

@@ -19,6 +19,7 @@ use std::io::Cursor;
 
 // Attributes of our own. `exposure` without a prefix would be the standard's exposure time in seconds.
 const SAMPLES: &str = "rtc.samples";
+const LEAST_SAMPLES: &str = "rtc.samples.least";
 const NOISE: &str = "rtc.noise";
 const LIMIT: &str = "rtc.limit";
 const SEED: &str = "rtc.seed";
@@ -83,7 +84,8 @@ fn attributes(facts: &Facts, position: Vec2<i32>) -> LayerAttributes {
     layer.layer_position = position;
     // 64 bits do not fit an integer attribute, and a text shows in every viewer.
     let texts = [
-        (SAMPLES, facts.samples.map(|n| n.to_string())),
+        (SAMPLES, facts.samples.map(|[_, most]| most.to_string())),
+        (LEAST_SAMPLES, facts.samples.map(|[least, _]| least.to_string())),
         (SEED, facts.seed.map(|n| n.to_string())),
         (SCENE, facts.scene.clone()),
         (LIMIT, facts.limit.clone()),
@@ -213,11 +215,23 @@ pub fn decode_head(file: &[u8]) -> Result<Head, CannotDecode> {
     Ok(Head { frame, facts: facts(layer), texts, words: names(words), others: names(others) })
 }
 
+/// How many bytes may come of one: deflate repeats 258 bytes by 2 bits at best (RFC 1951, 3.2.5).
+const MOST_EXPANSION: u64 = 1032;
+
 /// Reads the channels of whole numbers, by name. All channels are in memory for a moment, so [`decode_head`] should have been
-/// asked which there are.
+/// asked which there are. A file that is too small for what it claims to hold is refused before.
 pub fn decode_words(file: &[u8]) -> Result<Vec<Words>, CannotDecode> {
     let refuse = |error: exr::error::Error| CannotDecode(error.to_string());
-    refuse_large(file)?;
+    for header in &refuse_large(file)?.headers {
+        let bytes = (header.layer_size.0 as u64 * header.layer_size.1 as u64)
+            .saturating_mul(header.channels.bytes_per_pixel as u64);
+        if bytes / MOST_EXPANSION > file.len() as u64 {
+            return Err(CannotDecode(format!(
+                "its {} bytes cannot hold the {bytes} that it claims",
+                file.len()
+            )));
+        }
+    }
     let reader = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
     let image = reader.all_attributes().from_buffered(Cursor::new(file)).map_err(refuse)?;
     let words = image.layer_data.channel_data.list.into_iter().filter_map(|channel| {
@@ -247,13 +261,14 @@ fn facts(layer: &LayerAttributes) -> Facts {
         Some(AttributeValue::Text(text)) => Some(text.to_string()),
         _ => None,
     };
+    let count = |name: &str| text(name)?.parse().ok();
     let number = |name: &str| match layer.other.get(&Text::from(name)) {
         Some(AttributeValue::F64(number)) if number.is_finite() => Some(*number),
         _ => None,
     };
     Facts {
         software: layer.software_name.as_ref().map_or_else(String::new, Text::to_string),
-        samples: text(SAMPLES).and_then(|n| n.parse().ok()),
+        samples: count(LEAST_SAMPLES).zip(count(SAMPLES)).map(|(least, most)| [least, most]),
         seed: text(SEED).and_then(|n| n.parse().ok()),
         noise: number(NOISE),
         limit: text(LIMIT),

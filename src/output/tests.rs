@@ -11,7 +11,7 @@ fn sample() -> Picture {
 
 fn facts() -> Facts {
     Facts {
-        samples: Some(64),
+        samples: Some([64, 128]),
         seed: Some(u64::MAX),
         scene: Some("c0ffee".into()),
         stops: Some(-1.3),

@@ -2,27 +2,15 @@
 //!
 //! Any number of threads, tiles, passes, crops or machines give the same bits, and merging films is addition.
 
-use crate::color::{Rgb, luminance};
+mod pixel;
+
+use crate::color::Rgb;
 use crate::develop::display;
 use crate::math::exp2;
 use crate::scene::Tonemap;
+pub(super) use pixel::counted;
+pub use pixel::{MOST_SAMPLES, Pixel, WORDS};
 use rayon::prelude::*;
-
-/// Samples a pixel may hold without any sum overflowing.
-pub const MOST_SAMPLES: u32 = 1 << 20;
-
-/// Greatest magnitude of one channel of one sample, in units of the fixed point: `MOST_SAMPLES` times this
-/// fits an `i64`, and `MOST_SAMPLES` times its square fits a `u128`.
-const MOST_FIXED: f64 = (1u64 << 42) as f64;
-
-/// Units of the fixed point in a filter weight of 1: `MOST_SAMPLES` weights of less than 8 fit an `i64`.
-const WEIGHT_SCALE: f64 = (1u64 << 40) as f64;
-
-/// Greatest magnitude of a filter weight in these units: `MOST_SAMPLES` times it fits an `i64`.
-const MOST_WEIGHT: u64 = (8 << 40) - 1;
-
-/// Numbers of 32 bits that hold the sums of a pixel: see [`Pixel::words`].
-pub const WORDS: usize = 15;
 
 /// A rectangle of pixels in the full picture, (0, 0) at its top left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,152 +54,6 @@ impl Window {
         debug_assert!(x >= self.x && x - self.x < self.width && y >= self.y && y - self.y < self.height);
         (y - self.y) as usize * self.width as usize + (x - self.x) as usize
     }
-}
-
-/// The sums of one pixel, in units of 1/scale.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Pixel {
-    sum: [i64; 3],
-    luminance_squares: u128,
-    /// Sums of the filter weights of samples that met something, and of those that met nothing in front of a
-    /// transparent background.
-    covered: i64,
-    open: i64,
-    samples: u32,
-}
-
-impl Pixel {
-    /// Adds a radiance. One that is too large for the scale is cut; one that is no number counts as black.
-    #[inline]
-    pub fn add(&mut self, radiance: Rgb, scale: f64) {
-        debug_assert!(radiance.is_finite(), "a path carries {radiance}");
-        let [r, g, b] = fixed(radiance, scale);
-        self.sum[0] += r;
-        self.sum[1] += g;
-        self.sum[2] += b;
-        let value = Rgb::new(r as f64, g as f64, b as f64);
-        // Rounded, not cut: a sum of squares that is too small on average would hide the noise of even pixels.
-        let magnitude = u128::from(nearest(luminance(value).abs()) as u64);
-        self.luminance_squares += magnitude * magnitude;
-        self.samples += 1;
-    }
-
-    /// Adds the weight of a sample to what is covered, or to what is open to a transparent background.
-    #[inline]
-    pub fn cover(&mut self, open: bool, weight: f64) {
-        let sum = if open { &mut self.open } else { &mut self.covered };
-        *sum += nearest(weight * WEIGHT_SCALE);
-    }
-
-    /// Adds the samples of another.
-    pub fn merge(&mut self, other: &Pixel) {
-        for (sum, v) in self.sum.iter_mut().zip(other.sum) {
-            *sum += v;
-        }
-        self.luminance_squares += other.luminance_squares;
-        self.covered += other.covered;
-        self.open += other.open;
-        self.samples += other.samples;
-    }
-
-    /// What is left without the samples of another, which are among these.
-    fn without(&self, other: &Pixel) -> Pixel {
-        Pixel {
-            sum: std::array::from_fn(|channel| self.sum[channel] - other.sum[channel]),
-            luminance_squares: self.luminance_squares - other.luminance_squares,
-            covered: self.covered - other.covered,
-            open: self.open - other.open,
-            samples: self.samples - other.samples,
-        }
-    }
-
-    /// By the weights of the very samples there are, so that it is exactly 1 or 0 where all of them agree. A filter
-    /// with negative weights may lead beyond these, and is cut.
-    pub(super) fn alpha(&self) -> f64 {
-        match (self.covered, self.open) {
-            (_, 0) => 1.0,
-            (0, _) => 0.0,
-            (covered, open) => {
-                let share = covered as f64 / (covered as f64 + open as f64);
-                if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) }
-            }
-        }
-    }
-
-    pub(super) fn mean(&self, scale: f64) -> Rgb {
-        let [r, g, b] = self.sum.map(|sum| sum as f64);
-        if self.samples == 0 { Rgb::ZERO } else { Rgb::new(r, g, b) / (scale * f64::from(self.samples)) }
-    }
-
-    /// How many samples it holds.
-    pub fn samples(&self) -> u32 {
-        self.samples
-    }
-
-    /// The sums as they are, each in words of 32 bits, the lowest first: red, green and blue in two each, the squares of
-    /// luminance in four, the weights of what is covered and of what is open in two each, and the number of samples.
-    pub fn words(&self) -> [u32; WORDS] {
-        let [r, g, b] = self.sum.map(|v| halves(v as u64));
-        let [covered, open] = [self.covered, self.open].map(|v| halves(v as u64));
-        let squares = [self.luminance_squares as u64, (self.luminance_squares >> 64) as u64].map(halves);
-        let pairs = [r, g, b, squares[0], squares[1], covered, open];
-        std::array::from_fn(|i| if i + 1 == WORDS { self.samples } else { pairs[i / 2][i % 2] })
-    }
-
-    /// The pixel with these sums; none where so many samples cannot have them.
-    pub fn from_words(words: [u32; WORDS]) -> Option<Pixel> {
-        let pair = |i: usize| u64::from(words[i]) | u64::from(words[i + 1]) << 32;
-        let pixel = Pixel {
-            sum: [0, 2, 4].map(|i| pair(i) as i64),
-            luminance_squares: u128::from(pair(6)) | u128::from(pair(8)) << 64,
-            covered: pair(10) as i64,
-            open: pair(12) as i64,
-            samples: words[WORDS - 1],
-        };
-        if pixel.samples > MOST_SAMPLES {
-            return None;
-        }
-        let n = u64::from(pixel.samples);
-        let most = MOST_FIXED as u64;
-        let sums = pixel.sum.iter().all(|sum| sum.unsigned_abs() <= n * most);
-        let squares = pixel.luminance_squares <= u128::from(n) * u128::from(most) * u128::from(most);
-        let weights = [pixel.covered, pixel.open].iter().all(|sum| sum.unsigned_abs() <= n * MOST_WEIGHT);
-        (sums && squares && weights).then_some(pixel)
-    }
-
-    pub(super) fn error(&self, scale: f64) -> f64 {
-        if self.samples < 2 {
-            return f64::INFINITY;
-        }
-        let n = f64::from(self.samples);
-        let mean = luminance(self.mean(1.0));
-        let variance = (self.luminance_squares as f64 / n - mean * mean).max(0.0);
-        (variance / (n - 1.0)).sqrt() / scale
-    }
-}
-
-/// The lower and the upper half of a number.
-fn halves(v: u64) -> [u32; 2] {
-    [v as u32, (v >> 32) as u32]
-}
-
-/// A radiance as it counts: cut where it is too large for the scale.
-pub(super) fn counted(radiance: Rgb, scale: f64) -> Rgb {
-    let most = Rgb::splat(MOST_FIXED / scale);
-    radiance.clamp(-most, most)
-}
-
-/// A radiance in units of 1/scale; what is too large is cut.
-#[inline]
-fn fixed(radiance: Rgb, scale: f64) -> [i64; 3] {
-    let fixed = |v: f64| nearest((v * scale).clamp(-MOST_FIXED, MOST_FIXED));
-    [fixed(radiance.x), fixed(radiance.y), fixed(radiance.z)]
-}
-
-/// The nearest whole number; 0 of what is no number. `f64::round` is a call where a processor may lack the instruction.
-#[inline]
-fn nearest(v: f64) -> i64 {
-    (v + 0.5f64.copysign(v)) as i64
 }
 
 /// Sums over a window of a picture.
@@ -269,7 +111,7 @@ impl Film {
 
     /// Samples of a pixel.
     pub fn samples(&self, x: u32, y: u32) -> u32 {
-        self.pixel(x, y).samples
+        self.pixel(x, y).samples()
     }
 
     /// Adds the samples of another film, whose window lies within this one's.
@@ -289,8 +131,7 @@ impl Film {
         Film { pixels, ..*self }
     }
 
-    /// The least error that all but one in a hundred pixels keep, as shown on a display: half the span between
-    /// the mean less and plus its standard error, in the channel where it is greatest, as a share of white.
+    /// The least error that all but one in a hundred pixels keep in every channel: see [`Film::shown_error`].
     pub fn noise(&self, stops: f64, tonemap: Tonemap) -> f64 {
         let mut errors = self.shown_errors(stops, tonemap);
         if errors.is_empty() {
@@ -300,18 +141,26 @@ impl Film {
         *errors.select_nth_unstable_by(rank, f64::total_cmp).1
     }
 
-    /// The standard errors of the pixels as shown, row by row: see [`Film::noise`].
-    pub(super) fn shown_errors(&self, stops: f64, tonemap: Tonemap) -> Vec<f64> {
-        self.pixels.par_iter().map(|pixel| self.shown_error(pixel, stops, tonemap)).collect()
+    /// Standard error of each channel of a pixel as a display shows it, as a share of white. It is that of the mean, by way of
+    /// half the span between the mean less and plus each of the independent errors that make it, both as shown: curves mix
+    /// channels, and are flat where a channel is at its end. Below two samples nothing is known, and it is 1.
+    pub fn shown_error(&self, x: u32, y: u32, stops: f64, tonemap: Tonemap) -> Rgb {
+        self.error_of(self.pixel(x, y), stops, tonemap)
     }
 
-    fn shown_error(&self, pixel: &Pixel, stops: f64, tonemap: Tonemap) -> f64 {
-        let (mean, error) = (pixel.mean(self.scale), pixel.error(self.scale));
-        if error == f64::INFINITY {
-            return 1.0;
+    /// Those of the worst channel of every pixel, row by row.
+    pub(super) fn shown_errors(&self, stops: f64, tonemap: Tonemap) -> Vec<f64> {
+        self.pixels.par_iter().map(|pixel| self.error_of(pixel, stops, tonemap).max_element()).collect()
+    }
+
+    fn error_of(&self, pixel: &Pixel, stops: f64, tonemap: Tonemap) -> Rgb {
+        let Some(errors) = pixel.errors(self.scale) else { return Rgb::ONE };
+        let (mean, mut variance) = (pixel.mean(self.scale), Rgb::ZERO);
+        for error in errors.into_iter().filter(|error| *error != Rgb::ZERO) {
+            let span = display(mean + error, stops, tonemap) - display(mean - error, stops, tonemap);
+            variance += 0.25 * span * span;
         }
-        let span = display(mean + error, stops, tonemap) - display(mean - error, stops, tonemap);
-        0.5 * span.abs().max_element()
+        Rgb::new(variance.x.sqrt(), variance.y.sqrt(), variance.z.sqrt())
     }
 
     fn pixel(&self, x: u32, y: u32) -> &Pixel {

@@ -1,9 +1,8 @@
 //! When a picture has enough samples, and where it has too few.
 //!
-//! **Noise** is the standard error of the displayed pixel, as a share of white: see [`Film::noise`]. It counts a pixel's samples
-//! as independent of each other. They are stratified, which makes the true error smaller for the most part. The error is that
-//! of luminance: what is said is rather too much than too little in pale light, and up to 14 times too little for a channel of
-//! strongly coloured light, the reciprocal of blue's share of luminance.
+//! **Noise** is the standard error of the displayed pixel in its worst channel, as a share of white: see [`Film::shown_error`]. It
+//! counts a pixel's samples as independent of each other. They are stratified, which makes the true error smaller for the most
+//! part.
 //!
 //! **Where samples go.** With a noise target, pixels get [`Limits::least`] samples, and are then judged; those blocks of pixels
 //! that are too noisy go on to twice as many, and so on. A block goes on or stays behind as a whole, and only where all its

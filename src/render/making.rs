@@ -191,14 +191,17 @@ impl Making {
     /// they were to have, they get these first.
     fn go_on(&mut self, limits: &Limits, shown: Shown) -> Option<Limit> {
         let [least, most] = self.samples();
-        let goal = limits.rung(most);
         let Some(wanted) = limits.noise else {
+            let goal = limits.rung(most);
             self.blocks.iter_mut().for_each(|block| block.aim = goal.max(block.samples));
             return (least >= goal).then_some(Limit::Samples);
         };
         let is_open = |block: &Block| block.samples < block.aim;
         let unjudged = most < limits.rung(0);
-        if unjudged || self.blocks.iter().any(is_open) {
+        let aim = self.blocks.iter().filter(|block| is_open(block)).map(|block| block.aim).max();
+        // What was under way is ended: blocks that had stayed behind may have fewer samples yet than there were when it began.
+        let goal = limits.rung(if unjudged { most } else { aim.map_or(most, |aim| aim.max(most)) });
+        if unjudged || aim.is_some() {
             // Put aside on the way, so those go on that were going on.
             let goes_on = |block: &&mut Block| unjudged || is_open(block);
             self.blocks.iter_mut().filter(goes_on).for_each(|block| block.aim = goal.max(block.samples));
@@ -364,7 +367,9 @@ impl Tracer<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::film::Pixel;
     use super::*;
+    use crate::color::Rgb;
     use crate::scene::{Target, Tonemap};
 
     const SHOWN: Shown = Shown { stops: 0.0, tonemap: Tonemap::None };
@@ -456,5 +461,24 @@ mod tests {
         let mut uneven = making.aims();
         uneven[1] = 7;
         assert_eq!(Making::resumed(making.film.clone(), 0, &uneven, None), None);
+    }
+
+    #[test]
+    fn a_rung_that_was_put_aside_is_ended_before_anything_is_judged() {
+        // Three blocks: one that had stayed behind at 16 samples, and one that stays.
+        let (window, counts) = (Window::whole([48, 16]), [80u32, 256, 16]);
+        let pixel = |index: usize| {
+            let mut pixel = Pixel::default();
+            (0..counts[index % 48 / 16]).for_each(|n| pixel.add(Rgb::splat(f64::from(n % 2)), 1024.0));
+            pixel
+        };
+        let film = Film::with_pixels(window, 1024.0, (0..window.pixels()).map(pixel).collect());
+        let aims: Vec<u32> = (0..window.pixels()).map(|index| [512, 512, 16][index % 48 / 16]).collect();
+        let mut making = Making::resumed(film.unwrap(), 0, &aims, None).unwrap();
+        let limits = Limits { noise: Some(1e-4), least: 16, ..Limits::from(Target::Samples(1 << 16)) };
+        assert_eq!((making.go_on(&limits, SHOWN), making.aims()), (None, aims));
+        // No further than there are to be.
+        assert_eq!(making.go_on(&Limits { samples: 300, ..limits }, SHOWN), None);
+        assert_eq!(making.blocks.iter().map(|block| block.aim).collect::<Vec<_>>(), [300, 300, 16]);
     }
 }

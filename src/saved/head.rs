@@ -33,7 +33,13 @@ impl Head {
         let text = |name: &str| head.texts.iter().find(|(n, _)| n == name).map(|(_, value)| value.as_str());
         match text(FORM) {
             None => return refused("holds no exact sums: it is no checkpoint and no share of a picture"),
-            Some(version) if version != VERSION => return refused("is of another version of rtc"),
+            Some(version) if version != VERSION => {
+                let version: String = version.escape_debug().take(8).collect();
+                let other = format!(
+                    "holds its sums in form {version}, and this version of rtc reads form {VERSION} alone"
+                );
+                return refused(format!("{other}: only the version that wrote it can use it"));
+            }
             Some(_) if !has_channels(&head) => return refused("has other channels than those of exact sums"),
             Some(_) => {}
         }

@@ -80,6 +80,14 @@ fn damaged_files_are_refused() {
     for garbage in [&b""[..], b"sphere {}", &[0x76, 0x2f, 0x31, 0x01], &[0xff; 4096]] {
         assert!(Saved::decode(garbage).is_err());
     }
+    let old = saved(None, 0..3, 3);
+    let mut texts = old.subject.texts(&old.making);
+    texts.iter_mut().filter(|(name, _)| name == FORM).for_each(|(_, value)| *value = "2".into());
+    let channels = Channels { words: words(&old.making), texts, ..Channels::default() };
+    let file = encode_exr(&picture(&film(0..1), &identity()), &Facts::unknown(), channels)
+        .expect("it can be written");
+    let why = Saved::decode(&file).expect_err("it is of an earlier form").to_string();
+    assert!(why.contains("in form 2, and this version of rtc reads form 3 alone"), "{why}");
     let plain = encode_exr(&picture(&film(0..1), &identity()), &Facts::unknown(), Channels::default());
     let why = Saved::decode(&plain.expect("it can be written")).expect_err("it has no sums");
     assert!(why.to_string().contains("no exact sums"), "{why}");
@@ -95,6 +103,32 @@ fn shifted(file: &[u8], attribute: &[u8], by: i32) -> Vec<u8> {
         *bytes = (i32::from_le_bytes(*bytes) + by).to_le_bytes();
     }
     moved
+}
+
+#[test]
+fn a_small_file_that_claims_many_pixels_is_refused_before_they_get_memory() {
+    // A few pixels in the corner of a large picture, and then as if they were all of it.
+    for ([width, height], why) in [([16_384, 8192], "cannot hold"), ([32_768, 32_768], "are allowed")] {
+        let value = |name: &str| {
+            Some(match name {
+                "size" => format!("{width}x{height}"),
+                "crop" => format!("0,0,{width},{height}"),
+                name => format!("{name} of the scene"),
+            })
+        };
+        let identity = Identity::from_values(value).expect("every name has a value");
+        let subject = Subject { program: "rtc 0".into(), identity, share: None };
+        let making = Making::new(Window::whole([4, 4]), 1.0);
+        let file = subject.encode(&making, &Facts::unknown()).expect("it can be written");
+        let name = b"dataWindow\0box2i\0";
+        let at =
+            file.windows(name.len()).position(|bytes| bytes == name).expect("it is there") + name.len() + 4;
+        let mut claims = file.clone();
+        claims[at + 8..at + 12].copy_from_slice(&(width - 1u32).to_le_bytes());
+        claims[at + 12..at + 16].copy_from_slice(&(height - 1u32).to_le_bytes());
+        let said = Saved::decode(&claims).expect_err("it is too small").to_string();
+        assert!(said.contains(why), "{said}");
+    }
 }
 
 #[test]
@@ -164,7 +198,11 @@ fn sums_that_cannot_be_are_refused() {
     for word in 0..WORDS - 1 {
         let mut large = [0; WORDS];
         (large[word | 1], large[WORDS - 1]) = (0x7fff_ffff, 1);
-        large[9] = if (6..10).contains(&word) { u32::MAX } else { 0 };
+        // The upper half of a product comes two words behind.
+        let products = 6..WORDS - 5;
+        if products.contains(&word) {
+            large[(word - 6) / 4 * 4 + 9] = 0x7fff_ffff;
+        }
         assert_eq!(Pixel::from_words(large), None, "word {word}");
     }
 }

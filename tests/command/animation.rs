@@ -250,6 +250,59 @@ fn done_frames_are_skipped_and_those_that_changed_made_anew() {
 }
 
 #[test]
+fn a_frame_of_other_settings_is_not_taken_for_done() {
+    let desk = desk();
+    let film = |rest: &str| {
+        build(&desk, &format!(r#"--sweep "t = 0 to 1" --frames 2 --only 2 -o f{{}}.exr --resume {rest}"#))
+    };
+    film("").expect(0, &["frame 2 of 2: 3 samples"]);
+    film("").expect(0, &["frame 2 of 2 is done"]);
+    for (flags, differs) in [
+        ("--exposure 2", "its exposure ("),
+        ("--tonemap agx", "its tonemap (neutral, not agx)"),
+        ("--crop 1,1,9,9", "its crop (0,0,24,18, not 1,1,9,9)"),
+        ("--set count=2", "its surfaces"),
+        ("--aov depth", "its channels (, not depth)"),
+        ("--denoise", "its denoising (no, not yes)"),
+        ("--seed 4", "its seed (0, not 4)"),
+    ] {
+        film(flags).expect(0, &[differs]);
+        film(flags).expect(0, &["frame 2 of 2 is done"]);
+        film("").expect(0, &["made anew"]);
+    }
+    // Of another film with as many frames.
+    build(&desk, r#"--sweep "t = 0 to 0.5" --frames 2 --only 2 -o f{}.exr --resume"#)
+        .expect(0, &["made anew"]);
+    film("").expect(0, &["made anew: it differs in its surfaces"]);
+    desk.put("rise.rt", RISING.replace("90W", "91W"));
+    film("").expect(0, &["made anew"]);
+}
+
+/// A task that is asked for again while the first one is still at it.
+#[test]
+fn frames_that_are_made_twice_at_once_are_whole() {
+    let desk = desk();
+    let film = |name: &str| {
+        let flags = format!("--frames 6 --size 48x36 --samples 10 -o {name}{{}}.exr --resume");
+        let mut command = desk.command("build rise.rt");
+        command.args(["--sweep", "t = 0 to 1"]).args(flags.split_whitespace()).stderr(Stdio::piped());
+        command
+    };
+    ended(film("one").output().unwrap()).expect(0, &[]);
+    let both = [(); 2].map(|()| film("two").spawn().unwrap());
+    let both = both.map(|child| ended(child.wait_with_output().unwrap()));
+    assert!(both.iter().any(|ended| ended.code == Some(0)), "{both:?}");
+    for ended in both.iter().filter(|ended| ended.code != Some(0)) {
+        ended.expect(2, &["another process is writing it"]);
+    }
+    ended(film("two").output().unwrap()).expect(0, &["6 of 6 is done"]);
+    for number in 1..=6 {
+        assert_same(&desk.path(&format!("one{number}.exr")), &desk.path(&format!("two{number}.exr")));
+    }
+    assert!(desk.names().iter().all(|name| !name.ends_with(".tmp")), "{:?}", desk.names());
+}
+
+#[test]
 fn frames_with_names_in_them_are_made_anew_when_these_change() {
     let desk = desk();
     let named = |name: &str| {

@@ -72,12 +72,90 @@ fn shares_put_together_are_the_picture_of_one_machine() {
     build(&desk, "--samples 10 --shard 2/3 --seed 9 -o foreign.exr").expect(0, &[]);
     desk.run("merge part1.exr foreign.exr part3.exr -o no.exr")
         .expect(2, &["`foreign.exr` does not go with `part1.exr`", "its seed (9, not 0)"]);
-    desk.run("merge one.exr -o no.exr").expect(2, &["`one.exr` holds no exact sums"]);
+    desk.run("merge one.exr -o no.exr")
+        .expect(2, &["`one.exr` holds no exact sums", "leave out what is no share"]);
     desk.run("merge room.rt -o no.exr").expect(2, &["`room.rt` is no EXR"]);
     fs::write(desk.path("torn.exr"), &desk.get("part2.exr")[..9000]).unwrap();
     desk.run("merge part1.exr torn.exr part3.exr -o no.exr").expect(2, &["`torn.exr` is no EXR"]);
+    // Of many files it is said which one is not as it should be, wherever it stands.
+    let mut spoilt = desk.get("part2.exr");
+    let middle = spoilt.len() / 2;
+    spoilt[middle] ^= 1;
+    desk.put("spoilt.exr", spoilt);
+    for wrong in ["torn.exr", "spoilt.exr", "one.exr", "missing.exr"] {
+        for order in [format!("{wrong} part1.exr part3.exr"), format!("part1.exr part3.exr {wrong}")] {
+            desk.run(&format!("merge {order} -o no.exr")).expect(2, &[&format!("`{wrong}`")]);
+        }
+    }
     desk.run("merge --partial part1.exr torn.exr part3.exr -o look.png").expect(0, &["it is left out"]);
     assert!(!desk.names().contains(&"no.exr".to_string()));
+}
+
+/// A file with another value of an attribute, whose name and type these are.
+#[cfg(unix)]
+fn with_attribute(file: &[u8], name: &str, value: &[u8]) -> Vec<u8> {
+    let name = name.as_bytes();
+    let at = file.windows(name.len()).position(|bytes| bytes == name).unwrap() + name.len();
+    let length = u32::from_le_bytes(*file[at..].first_chunk().unwrap()) as usize;
+    [&file[..at], &(value.len() as u32).to_le_bytes(), value, &file[at + 4 + length..]].concat()
+}
+
+#[cfg(unix)]
+#[test]
+fn a_hostile_file_is_refused_by_its_name_within_little_memory() {
+    let desk = desk();
+    let flags = "build room.rt --size 10000x10000 --crop 0,0,4,4 --samples 2 --quiet";
+    desk.run(&format!("{flags} --shard 1/2 -o part1.exr")).expect(0, &[]);
+    desk.run(&format!("{flags} --checkpoint=kept -o some.exr")).expect(0, &[]);
+    let window = |side: u32| [0, 0, side - 1, side - 1].map(u32::to_le_bytes).concat();
+    for kept in ["part1.exr", "kept"] {
+        let data = |file: &[u8], side| with_attribute(file, "dataWindow\0box2i\0", &window(side));
+        // As many pixels as there may be, in few bytes; and more than there may be.
+        let all = with_attribute(&desk.get(kept), "rtc.saved.crop\0string\0", b"0,0,10000,10000");
+        desk.put("all", data(&all, 10_000));
+        let display = with_attribute(&desk.get(kept), "displayWindow\0box2i\0", &window(32_768));
+        desk.put("billion", data(&display, 32_768));
+        for (hostile, said) in [("all", "cannot hold"), ("billion", "1073741824 pixels")] {
+            let merge = format!("merge part1.exr {hostile} -o no.exr");
+            let resume = format!(
+                "{} --crop 0,0,10000,10000 --resume={hostile} -o no.exr",
+                flags.replace("--crop 0,0,4,4", "")
+            );
+            for arguments in [merge, resume] {
+                let capped = format!("ulimit -v 4194304; exec '{}' {arguments}", env!("CARGO_BIN_EXE_rtc"));
+                let mut command = Command::new("sh");
+                command.args(["-c", &capped]).current_dir(desk.path("."));
+                super::ended(command.output().unwrap()).expect(2, &[&format!("`{hostile}`"), said]);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_share_that_is_made_twice_at_once_is_one_whole_file() {
+    let desk = desk();
+    let share = "build room.rt --size 96x72 --samples 60 --quiet --shard 2/3";
+    desk.run(&format!("{share} -o one.exr")).expect(0, &[]);
+    // As the scripts of a farm ask for it, and without what keeps another one from it.
+    for keeping in ["--checkpoint --checkpoint-every 1spp", ""] {
+        let start =
+            || desk.command(&format!("{share} -o two.exr {keeping}")).stderr(Stdio::piped()).spawn().unwrap();
+        let mut lost = start();
+        std::thread::sleep(Duration::from_millis(150));
+        lost.kill().unwrap();
+        lost.wait().unwrap();
+        let both: Vec<_> = (0..3).map(|_| start()).collect();
+        let both: Vec<_> =
+            both.into_iter().map(|child| super::ended(child.wait_with_output().unwrap())).collect();
+        assert!(both.iter().any(|ended| ended.code == Some(0)), "{both:?}");
+        for ended in both.iter().filter(|ended| ended.code != Some(0)) {
+            ended.expect(2, &["`two.exr", "another process is writing it"]);
+        }
+        assert_same(&desk.path("one.exr"), &desk.path("two.exr"));
+        desk.run(&format!("{share} -o two.exr {keeping}")).expect(0, &[]);
+        assert_same(&desk.path("one.exr"), &desk.path("two.exr"));
+        fs::remove_file(desk.path("two.exr")).unwrap();
+    }
 }
 
 #[test]

@@ -4,14 +4,14 @@
 
 use rt_lang::color::{Rgb, luminance};
 use rt_lang::develop::display;
-use rt_lang::math::exp2;
+use rt_lang::math::{DMat3, exp2};
 use rt_lang::scene::Tonemap;
 
 /// Samples a pixel may hold without any sum overflowing.
 pub const MOST_SAMPLES: u32 = 1 << 20;
 
 /// Greatest magnitude of one channel of one sample, in units of the fixed point: `MOST_SAMPLES` times this
-/// fits an `i64`, and `MOST_SAMPLES` times its square fits a `u128`.
+/// fits an `i64`, and `MOST_SAMPLES` times its square an `i128`.
 const MOST_FIXED: f64 = (1u64 << 42) as f64;
 
 /// Units of the fixed point in a filter weight of 1: `MOST_SAMPLES` weights of less than 8 fit an `i64`.
@@ -65,7 +65,8 @@ impl Window {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pixel {
     sum: [i64; 3],
-    luminance_squares: u128,
+    /// Of the products of each channel with each.
+    products: [[i128; 3]; 3],
     /// Sums of the filter weights of samples that met something, and of those that met nothing in front of a
     /// transparent background.
     covered: i64,
@@ -83,9 +84,11 @@ impl Pixel {
         for (sum, v) in self.sum.iter_mut().zip(value.to_array()) {
             *sum += v as i64;
         }
-        // Rounded, not cut: a sum of squares that is too small on average would hide the noise of even pixels.
-        let magnitude = luminance(value).abs().round() as u128;
-        self.luminance_squares += magnitude * magnitude;
+        for (row, own) in self.products.iter_mut().zip(value.to_array()) {
+            for (sum, other) in row.iter_mut().zip(value.to_array()) {
+                *sum += own as i128 * other as i128;
+            }
+        }
         self.samples += 1;
     }
 
@@ -100,7 +103,11 @@ impl Pixel {
         for (sum, v) in self.sum.iter_mut().zip(other.sum) {
             *sum += v;
         }
-        self.luminance_squares += other.luminance_squares;
+        for (row, others) in self.products.iter_mut().zip(other.products) {
+            for (sum, v) in row.iter_mut().zip(others) {
+                *sum += v;
+            }
+        }
         self.covered += other.covered;
         self.open += other.open;
         self.samples += other.samples;
@@ -124,14 +131,22 @@ impl Pixel {
         if self.samples == 0 { Rgb::ZERO } else { Rgb::new(r, g, b) / (scale * f64::from(self.samples)) }
     }
 
-    fn error(&self, scale: f64) -> f64 {
-        if self.samples < 2 {
-            return f64::INFINITY;
-        }
+    /// Of the mean, as if samples were independent; none below two samples.
+    fn covariance(&self, scale: f64) -> Option<DMat3> {
         let n = f64::from(self.samples);
-        let mean = luminance(self.mean(1.0));
-        let variance = (self.luminance_squares as f64 / n - mean * mean).max(0.0);
-        (variance / (n - 1.0)).sqrt() / scale
+        let mean = self.sum.map(|sum| sum as f64 / n);
+        let entry = |row: usize, column: usize| {
+            (self.products[row][column] as f64 / n - mean[row] * mean[column]) / (n - 1.0) / scale / scale
+        };
+        let column = |column| Rgb::new(entry(0, column), entry(1, column), entry(2, column));
+        (self.samples >= 2).then(|| DMat3::from_cols(column(0), column(1), column(2)))
+    }
+
+    fn error(&self, scale: f64) -> f64 {
+        // Luminance is linear: its gradient is that of any colour.
+        let gradient = Rgb::new(luminance(Rgb::X), luminance(Rgb::Y), luminance(Rgb::Z));
+        let variance = |covariance: DMat3| gradient.dot(covariance * gradient);
+        self.covariance(scale).map_or(f64::INFINITY, |covariance| variance(covariance).max(0.0).sqrt())
     }
 }
 
@@ -191,11 +206,11 @@ impl Film {
         self.merge_pixels(other.window, &other.pixels);
     }
 
-    /// The least error that all but one in a hundred pixels keep, as shown on a display: half the span between
-    /// the mean less and plus its standard error, in the channel where it is greatest, as a share of white.
+    /// The least error that all but one in a hundred pixels keep, as shown on a display, in the channel where it is greatest, as
+    /// a share of white.
     pub fn noise(&self, stops: f64, tonemap: Tonemap) -> f64 {
         let mut errors: Vec<f64> =
-            self.pixels.iter().map(|pixel| self.shown_error(pixel, stops, tonemap)).collect();
+            self.pixels.iter().map(|pixel| self.error_of(pixel, stops, tonemap).max_element()).collect();
         if errors.is_empty() {
             return 0.0;
         }
@@ -203,13 +218,22 @@ impl Film {
         *errors.select_nth_unstable_by(rank, f64::total_cmp).1
     }
 
-    fn shown_error(&self, pixel: &Pixel, stops: f64, tonemap: Tonemap) -> f64 {
-        let (mean, error) = (pixel.mean(self.scale), pixel.error(self.scale));
-        if error == f64::INFINITY {
-            return 1.0;
-        }
-        let span = display(mean + error, stops, tonemap) - display(mean - error, stops, tonemap);
-        0.5 * span.abs().max_element()
+    /// Standard error of the channels of a pixel as shown, by how what is shown changes with each channel of the mean.
+    pub fn shown_error(&self, x: u32, y: u32, stops: f64, tonemap: Tonemap) -> Rgb {
+        self.error_of(self.pixel(x, y), stops, tonemap)
+    }
+
+    fn error_of(&self, pixel: &Pixel, stops: f64, tonemap: Tonemap) -> Rgb {
+        let Some(covariance) = pixel.covariance(self.scale) else { return Rgb::ONE };
+        let mean = pixel.mean(self.scale);
+        let slope = |axis: Rgb| {
+            let step = 1e-6 * mean.length().max(1e-3);
+            let [below, above] = [mean - axis * step, mean + axis * step];
+            (display(above, stops, tonemap) - display(below, stops, tonemap)) / (2.0 * step)
+        };
+        let slopes = DMat3::from_cols(slope(Rgb::X), slope(Rgb::Y), slope(Rgb::Z));
+        let shown = slopes * covariance * slopes.transpose();
+        Rgb::new(shown.x_axis.x, shown.y_axis.y, shown.z_axis.z).max(Rgb::ZERO).map(f64::sqrt)
     }
 
     fn pixel(&self, x: u32, y: u32) -> &Pixel {

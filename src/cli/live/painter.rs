@@ -421,8 +421,6 @@ impl<'a> Painting<'a> {
         let shown = self.shown(&canvas.prepass);
         let mut frame = self.frame(pixels(canvas, self.scene.trace.size), 1, samples, shown, false);
         if let (Some(limit), Some(Frame { facts, .. })) = (canvas.limit, Arc::get_mut(&mut frame)) {
-            // Where it stops, some pixels may have more samples than others.
-            facts.samples = Some(u64::from(samples[1]));
             (facts.noise, facts.limit) = (canvas.noise, Some(limit.word().into()));
         }
         if samples[0] >= ENOUGH.min(canvas.aim) {
@@ -449,7 +447,7 @@ impl<'a> Painting<'a> {
             // Nothing that could be traced again.
             true => facts,
             false => Facts {
-                samples: Some(u64::from(samples[0])),
+                samples: Some(samples),
                 seed: Some(scene.trace.seed),
                 scene: Some(self.hash.clone()),
                 ..facts

@@ -1,6 +1,7 @@
 //! Random numbers, what is drawn from them, and sums.
 
 use super::*;
+use crate::develop::display;
 use crate::render::film::scale_for;
 use crate::render::sampler::Pair;
 use adapter::pair;
@@ -143,6 +144,52 @@ fn the_error_of_a_nearly_even_pixel_is_seen() {
     let expected = 0.005 / f64::sqrt(3.0 * f64::from(N));
     let error = film.error(0, 0);
     assert!((error / expected - 1.0).abs() < 0.05, "{error}, not {expected}");
+}
+
+/// Light that varies in ways of its own colour each, some of them together and some not: what is stated of the channels of a
+/// display is what they are off by.
+#[test]
+fn the_error_of_every_channel_is_known_as_it_is_shown() {
+    const PIXELS: u32 = 4000;
+    const N: u32 = 64;
+    let cases = [
+        // White light on a colour, dark and grey, and white light beside a coloured one.
+        vec![Rgb::new(0.3, 0.2, 0.1)],
+        vec![Rgb::splat(0.02)],
+        vec![Rgb::splat(0.05), Rgb::new(0.05, 0.0, 0.0)],
+        // Red and blue alone, strong and weak, and three colours that make up grey.
+        vec![Rgb::new(0.4, 0.0, 0.0)],
+        vec![Rgb::new(0.0, 0.0, 0.05)],
+        vec![Rgb::new(0.2, 0.0, 0.0), Rgb::new(0.0, 0.0, 0.3)],
+        vec![Rgb::X * 0.1, Rgb::Y * 0.1, Rgb::Z * 0.1],
+        // Beyond where the curve bends.
+        vec![Rgb::new(1.5, 0.3, 0.0), Rgb::new(0.0, 0.2, 0.6)],
+    ];
+    let mut random = Random(7);
+    for (colors, tonemap) in
+        cases.iter().flat_map(|colors| [Tonemap::Neutral, Tonemap::None, Tonemap::Agx].map(|t| (colors, t)))
+    {
+        let film = Film::new(Window::whole([1, 1]), scale_for(0.1, 1.0));
+        let truth = display(colors.iter().copied().sum(), 0.0, tonemap);
+        let (mut off, mut stated) = (Rgb::ZERO, Rgb::ZERO);
+        for _ in 0..PIXELS {
+            let mut pixel = Pixel::default();
+            for _ in 0..N {
+                let light = |color: &Rgb| *color * random.within(0.7, 1.3);
+                pixel.add(colors.iter().map(light).sum(), film.scale());
+            }
+            let mut film = film.clone();
+            film.merge_pixels(Window::whole([1, 1]), &[pixel]);
+            let (error, own) =
+                (display(film.mean(0, 0), 0.0, tonemap) - truth, film.shown_error(0, 0, 0.0, tonemap));
+            (off, stated) = (off + error * error, stated + own * own);
+        }
+        for channel in 0..3 {
+            let [off, stated] = [off, stated].map(|sum| (sum[channel] / f64::from(PIXELS)).sqrt());
+            // So many pixels know it to a hundredth.
+            assert!((stated - off).abs() < 0.05 * off + 1e-6, "{colors:?} {tonemap:?}: {stated}, not {off}");
+        }
+    }
 }
 
 #[test]

@@ -134,6 +134,35 @@ fn the_error_of_a_nearly_even_pixel_is_seen() {
     assert!((error / expected - 1.0).abs() < 0.05, "{error}, not {expected}");
 }
 
+/// Where errors are small, all ways to tell how they are shown are the same.
+#[test]
+fn the_tracer_tells_the_same_errors() {
+    use rt_lang::render::film as tracers;
+    let mut random = Random(3);
+    let scale = scale_for(0.3, 1.0);
+    for tonemap in [Tonemap::Neutral, Tonemap::None, Tonemap::Agx] {
+        for _ in 0..200 {
+            let colors = [(); 3].map(|()| random.point(1.0).abs() * 0.3);
+            let (mut own, mut theirs) = (Pixel::default(), tracers::Pixel::default());
+            for _ in 0..100 {
+                let light: Rgb = colors.iter().map(|color| *color * (1.0 + 0.001 * random.next())).sum();
+                own.add(light, scale);
+                theirs.add(light, scale);
+            }
+            let mut film = Film::new(Window::whole([1, 1]), scale);
+            film.merge_pixels(Window::whole([1, 1]), &[own]);
+            let window = tracers::Window::whole([1, 1]);
+            let other = tracers::Film::with_pixels(window, scale, vec![theirs]).unwrap();
+            let errors = [film.shown_error(0, 0, 0.5, tonemap), other.shown_error(0, 0, 0.5, tonemap)];
+            assert!(
+                (errors[0] - errors[1]).abs().max_element() < 0.01 * errors[0].max_element(),
+                "{errors:?}"
+            );
+            assert!((film.error(0, 0) / other.error(0, 0) - 1.0).abs() < 1e-3);
+        }
+    }
+}
+
 #[test]
 fn a_window_without_pixels_holds_nothing() {
     for (width, height) in [(0, 5), (5, 0), (0, 0)] {

@@ -191,8 +191,8 @@ function display(rgb, curve) {
   }
 }
 
-/// The same measure as the noise that is printed: half the span on a display between the value less and plus its
-/// standard error, where it is greatest, as a share of white.
+/// Half the span on a display between the value less and plus the standard error of its luminance, where it is greatest, as a
+/// share of white. The noise that is printed knows the errors of the channels, which are not sent.
 function noise(film, [left, top, right, bottom], out, stops, curve) {
   const gain = 2 ** (stops - film.scale);
   const { bits, width } = film;
