@@ -35,7 +35,7 @@ mod walk;
 
 pub use answers::*;
 pub use complete::complete;
-pub use layout::differences;
+pub use layout::{differences, differences_within};
 pub use rename::{references, rename};
 pub use say::{default, hex, range};
 pub use signature::signatures;

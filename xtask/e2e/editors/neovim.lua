@@ -92,11 +92,13 @@ step('the syntax file colours where there is no parser', function()
 end)
 
 step('what is laid out is indented so', function()
-  local garden = table.concat(vim.fn.readfile(root .. '/examples/garden/garden.rt'), '\n') .. '\n'
-  open('garden-copy.rt', garden)
-  vim.cmd('silent %left | silent normal! gg=G')
-  check(text() == garden, 'garden.rt is indented otherwise:\n' .. vim.diff(garden, text()))
-  vim.cmd('bwipeout!')
+  for _, scene in ipairs(vim.fn.glob(root .. '/examples/**/*.rt', false, true)) do
+    local written = table.concat(vim.fn.readfile(scene), '\n') .. '\n'
+    open('laid-out.rt', written)
+    vim.cmd('silent %left | silent normal! gg=G')
+    check(text() == written, scene .. ' is indented otherwise:\n' .. vim.diff(written, text()))
+    vim.cmd('bwipeout!')
+  end
 end)
 
 step('what a comment holds stays where it is', function()
