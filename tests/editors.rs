@@ -168,6 +168,24 @@ fn what_neovim_shares_with_vim_is_the_same() {
     }
 }
 
+/// What `:helptags` makes: without it, nobody who puts the folder on the runtimepath by hand finds the help.
+#[test]
+fn help_of_neovim_is_found() {
+    let folder = editors().join("nvim/doc");
+    let text = read(&folder.join("rtc.txt"));
+    let is_tag = |word: &&str| {
+        word.len() > 2
+            && word.starts_with('*')
+            && word.ends_with('*')
+            && !word[1..word.len() - 1].contains('*')
+    };
+    let tags: BTreeSet<&str> =
+        text.split_whitespace().filter(is_tag).map(|tag| tag.trim_matches('*')).collect();
+    assert!(tags.contains(":RtcPreview"));
+    let line = |tag: &&str| format!("{tag}\trtc.txt\t/*{tag}*\n");
+    settle(&folder.join("tags"), &tags.iter().map(line).collect::<String>());
+}
+
 // --- Snippets ---------------------------------------------------------------------------------------------------
 
 /// A snippet as it is before anything is typed: each place holds its first choice.

@@ -35,11 +35,9 @@
   "Show the page or the file at URI: in the browser if EXTERNAL, else at SELECTION."
   (if (eq external t)
       (browse-url uri)
-    (pop-to-buffer (find-file-noselect (funcall (if (fboundp 'eglot-uri-to-path) #'eglot-uri-to-path #'eglot--uri-to-path) uri)))
+    (pop-to-buffer (find-file-noselect (funcall (if (fboundp 'eglot-uri-to-path) 'eglot-uri-to-path 'eglot--uri-to-path) uri)))
     (when-let ((start (plist-get selection :start)))
-      (goto-char (point-min))
-      (forward-line (plist-get start :line))
-      (forward-char (min (plist-get start :character) (- (line-end-position) (point))))))
+      (goto-char (eglot--lsp-position-to-point start))))
   '(:success t))
 
 (provide 'rt-eglot)

@@ -87,8 +87,13 @@
   "Colours of a `.rt' file.")
 
 (defun rt--goes-on-p ()
-  "Whether the line at point goes on with the one before."
-  (looking-at-p "[ \t]*\\(?:|>\\|->\\|[*+<>]\\|/\\(?:[^/*]\\|$\\)\\|[=!]=\\|\\.[[:alpha:]_]\\|\\(?:and\\|or\\|to\\|then\\)\\_>\\|else\\_>[ \t]*[^ \t\n{i]\\)"))
+  "Whether the line at point goes on with the one before.
+An `else' that is followed by a body is a statement's."
+  (or (looking-at-p "[ \t]*\\(?:|>\\|->\\|[*+<>]\\|/\\(?:[^/*]\\|$\\)\\|[=!]=\\|\\.[[:alpha:]_]\\|\\(?:and\\|or\\|to\\|then\\)\\_>\\)")
+      (and (looking-at-p "[ \t]*else\\_>")
+           (not (looking-at-p "[ \t]*else[ \t]*{"))
+           (not (and (looking-at "[ \t]*else[ \t]+if\\_>[^{\n]*{")
+                     (not (string-match-p "\\_<then\\_>" (match-string 0))))))))
 
 (defun rt-indent-line ()
   "Indent the line at point.
@@ -113,13 +118,29 @@ more where it goes on with the line before."
         (indent-line-to column)
       (save-excursion (indent-line-to column)))))
 
+(defun rt--previous-thing ()
+  "Search backward for a thing that has a name; parts are listed apart."
+  (let (found)
+    (while (and (setq found (re-search-backward
+                             "^[ \t]*[[:alpha:]_][[:alnum:]_.]*[ \t]+\\([[:alpha:]_][[:alnum:]_]*\\)[ \t]*{" nil t))
+                (looking-at-p "[ \t]*part\\_>")))
+    found))
+
 (defconst rt-imenu-expression
   '(("Params" "^[ \t]*param[ \t]+\\([[:alpha:]_][[:alnum:]_]*\\)" 1)
     ("Parts" "^[ \t]*part[ \t]+\\([[:alpha:]_][[:alnum:]_]*\\)" 1)
     ("Functions" "^[ \t]*fn[ \t]+\\([[:alpha:]_][[:alnum:]_]*\\)" 1)
     ("Values" "^[ \t]*\\(?:let\\|material\\)[ \t]+\\([[:alpha:]_][[:alnum:]_]*\\)[ \t]*=" 1)
-    ("Things" "^[ \t]*[[:alpha:]_][[:alnum:]_.]*[ \t]+\\([[:alpha:]_][[:alnum:]_]*\\)[ \t]*{" 1))
+    ("Things" rt--previous-thing 1))
   "What `imenu' lists.")
+
+(defun rt--command (&rest arguments)
+  "A command line of `rt-program' and ARGUMENTS for this file.
+What it says of a scene stands on lines that `next-error' knows."
+  (mapconcat #'shell-quote-argument
+             `(,rt-program ,@arguments "--message-format" "short"
+                           ,@(and buffer-file-name (list (file-name-nondirectory buffer-file-name))))
+             " "))
 
 (defun rt--set-up ()
   "What both modes have in common."
@@ -127,9 +148,7 @@ more where it goes on with the line before."
   (setq-local comment-end "")
   (setq-local comment-start-skip "\\(?://+\\|/\\*+\\)[ \t]*")
   (setq-local indent-tabs-mode nil)
-  (setq-local compile-command
-              (format "%s check --message-format short %s" rt-program
-                      (if buffer-file-name (shell-quote-argument (file-name-nondirectory buffer-file-name)) ""))))
+  (setq-local compile-command (rt--command "check")))
 
 (defun rt-preview ()
   "Open the live preview of this scene in the browser, saved or not."
@@ -147,10 +166,11 @@ more where it goes on with the line before."
   "Render this scene; the picture is put beside its file."
   (interactive)
   (save-buffer)
-  (compile (format "%s build %s" rt-program (shell-quote-argument buffer-file-name))))
+  (compile (rt--command "build")))
 
 (defvar rt-mode-map
   (let ((map (make-sparse-keymap)))
+    (set-keymap-parent map prog-mode-map)
     (define-key map (kbd "C-c C-p") #'rt-preview)
     (define-key map (kbd "C-c C-b") #'rt-build)
     map)
@@ -170,6 +190,9 @@ more where it goes on with the line before."
 (declare-function treesit-ready-p "treesit")
 (declare-function treesit-font-lock-rules "treesit")
 (declare-function treesit-major-mode-setup "treesit")
+(declare-function treesit-node-child-by-field-name "treesit.c")
+(declare-function treesit-node-check "treesit.c")
+(declare-function treesit-node-text "treesit")
 
 (defun rt-ts--font-lock ()
   "Colours by the tree."
@@ -201,48 +224,54 @@ more where it goes on with the line before."
      ["param" "part" "fn" "import" "as" "for" "in" "if" "then" "else" "and" "or" "not" "to" "assert"]
      @font-lock-keyword-face)))
 
-(defvar rt-ts--indent-rules
-  `((rt
-     ((node-is "}") parent-bol 0)
-     ((node-is ")") parent-bol 0)
-     ((node-is "]") parent-bol 0)
-     ((parent-is "source_file") column-0 0)
-     ((parent-is "body") parent-bol rt-indent-offset)
-     ((parent-is "list") parent-bol rt-indent-offset)
-     ((parent-is "tuple") parent-bol rt-indent-offset)
-     ((parent-is "parenthesized") parent-bol rt-indent-offset)
-     ((parent-is "arguments") parent-bol rt-indent-offset)
-     ((parent-is "parameters") parent-bol rt-indent-offset)
-     ((parent-is "binary") parent-bol rt-indent-offset)
-     ((parent-is "conditional") parent-bol rt-indent-offset)
-     (no-node parent-bol 0)))
-  "Indentation by the tree.")
+(defun rt-ts--name (node)
+  "The name that NODE gives to what it declares, or nil."
+  (when-let ((name (treesit-node-child-by-field-name node "name")))
+    (treesit-node-text name t)))
+
+(defun rt-ts--named-p (node)
+  "Whether NODE is no mere word or sign."
+  (treesit-node-check node 'named))
+
+(defvar rt-ts-mode-map
+  (let ((map (make-sparse-keymap)))
+    (set-keymap-parent map rt-mode-map)
+    map)
+  "Keys of `rt-ts-mode'.")
 
 ;;;###autoload
 (define-derived-mode rt-ts-mode prog-mode "rt"
   "Major mode for `.rt' files, scenes of rtc, by tree-sitter."
   :syntax-table rt-mode-syntax-table
-  (unless (and (fboundp 'treesit-ready-p) (treesit-ready-p 'rt))
+  (unless (and (require 'treesit nil t) (treesit-ready-p 'rt t))
     (user-error "Emacs has no tree-sitter grammar for rt; see editors/README.md"))
-  (use-local-map rt-mode-map)
   (treesit-parser-create 'rt)
   (rt--set-up)
   (setq-local treesit-font-lock-settings (rt-ts--font-lock))
   (setq-local treesit-font-lock-feature-list '((comment definition) (keyword literal) (name)))
-  (setq-local treesit-simple-indent-rules rt-ts--indent-rules)
-  (setq-local treesit-defun-type-regexp (regexp-opt '("thing" "part" "function" "definition")))
+  (setq-local indent-line-function #'rt-indent-line)
+  ;; Keywords are nodes too, some of the same name.
+  (setq-local treesit-defun-type-regexp
+              (cons (concat "\\`" (regexp-opt '("thing" "part" "function" "definition")) "\\'") #'rt-ts--named-p))
   (setq-local treesit-simple-imenu-settings
-              '(("Params" "\\`param\\'" nil nil)
-                ("Parts" "\\`part\\'" nil nil)
-                ("Functions" "\\`function\\'" nil nil)
-                ("Values" "\\`definition\\'" nil nil)))
+              '(("Params" "\\`param\\'" rt-ts--name nil)
+                ("Parts" "\\`part\\'" rt-ts--name nil)
+                ("Functions" "\\`function\\'" rt-ts--name nil)
+                ("Values" "\\`definition\\'" rt-ts--name nil)
+                ("Things" "\\`thing\\'" rt-ts--name nil)))
+  (setq-local treesit-defun-name-function #'rt-ts--name)
   (treesit-major-mode-setup))
 
 ;;;###autoload
-(add-to-list 'auto-mode-alist
-             (cons "\\.rt\\'" (if (and (fboundp 'treesit-language-available-p) (treesit-language-available-p 'rt))
-                                  'rt-ts-mode
-                                'rt-mode)))
+(defun rt-auto-mode ()
+  "The mode of a scene: `rt-ts-mode' where Emacs has the grammar, else `rt-mode'."
+  (interactive)
+  (if (and (fboundp 'treesit-language-available-p) (treesit-language-available-p 'rt))
+      (rt-ts-mode)
+    (rt-mode)))
+
+;;;###autoload
+(add-to-list 'auto-mode-alist '("\\.rt\\'" . rt-auto-mode))
 
 ;; --- The language server ---------------------------------------------------------------------------------------
 

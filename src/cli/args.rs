@@ -17,12 +17,13 @@ use rt_lang::lower::Overrides;
 use rt_lang::output::Depth;
 use rt_lang::schema::Tonemap;
 use std::net::SocketAddr;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 pub use tools::{
     Check, Completions, Expand, Explain, Export, Info, Init, Lsp, Man, Messages, Reading, Show, Viewpoint,
 };
 pub use values::Denied;
-use values::{address, aov, crop, depths, exposure, samples, seed, size, stops, threads, tonemaps};
+use values::{address, aov, crop, depths, exposure, lines, samples, seed, size, stops, threads, tonemaps};
 pub use why::Why;
 
 /// Renders .rt scenes: a small text that describes a picture becomes the picture.
@@ -154,6 +155,7 @@ Examples:
   rtc fmt *.rt                 lay out every scene of this folder
   rtc fmt --check *.rt         name those that are not laid out so
   cat balls.rt | rtc fmt -     standard input and output
+  rtc fmt --lines 3:7 ball.rt  lay out what stands in lines 3 to 7
 
 Exit codes:
   0    done
@@ -166,6 +168,10 @@ pub struct Fmt {
     /// Scenes to lay out; `-` is standard input, which goes to standard output.
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
+
+    /// Lays out what stands in these lines alone, counted from 1.
+    #[arg(long, value_name = "FIRST:LAST", value_parser = lines)]
+    pub lines: Option<RangeInclusive<usize>>,
 
     /// Writes nothing, names the scenes that would change, and fails if there is one.
     #[arg(long)]

@@ -6,9 +6,10 @@ use super::interrupt::Interrupt;
 use super::terminal::Terminal;
 use super::{Exit, Problem, plain, target};
 use rt_lang::diagnostic::any_errors;
-use rt_lang::syntax;
+use rt_lang::{ide, syntax};
 use similar::TextDiff;
 use std::io::{Write, stdout};
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 /// Formats every file, also those behind one that fails. The worst of them gives the exit code.
@@ -33,6 +34,10 @@ fn one(file: &Path, arguments: &Fmt, terminal: Terminal, interrupt: &Interrupt) 
     let source = input.sources.get(input.id);
     let (formatted, slips) = syntax::format(input.id, &source.text);
     terminal.diagnostics(&slips, &input.sources);
+    let formatted = match &arguments.lines {
+        Some(lines) => within(&source.text, &formatted, lines),
+        None => formatted,
+    };
     let changes = formatted != source.text;
     if arguments.diff && changes {
         show(&difference(&source.name, &source.text, &formatted))?;
@@ -47,6 +52,20 @@ fn one(file: &Path, arguments: &Fmt, terminal: Terminal, interrupt: &Interrupt) 
     }
     let fails = any_errors(&slips) || (arguments.check && changes);
     Ok(if fails { Exit::Diagnostics } else { Exit::Done })
+}
+
+/// The text with those of its lines laid out that are meant.
+fn within(text: &str, formatted: &str, lines: &RangeInclusive<usize>) -> String {
+    let upto = |count: usize| text.split_inclusive('\n').take(count).map(str::len).sum();
+    let part = upto(lines.start() - 1)..upto(*lines.end());
+    let mut out = String::with_capacity(formatted.len());
+    let mut kept = 0;
+    for (place, laid_out) in ide::differences_within(text, formatted, part) {
+        out += &text[kept..place.start];
+        out += &laid_out;
+        kept = place.end;
+    }
+    out + &text[kept..]
 }
 
 /// What would change, as `diff -u` shows it.

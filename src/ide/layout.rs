@@ -4,7 +4,7 @@ use super::{Analysis, Edit, Location};
 use crate::syntax;
 use std::ops::Range;
 
-/// The edits that lay out a part of the text, line by line. A place without extent is in the part of the line it stands in.
+/// The edits that lay out a part of the text, line by line.
 pub(super) fn format(analysis: &Analysis, range: Range<usize>) -> Vec<Edit> {
     let source = analysis.source();
     let (formatted, _) = syntax::format(analysis.main, &source.text);
@@ -12,13 +12,21 @@ pub(super) fn format(analysis: &Analysis, range: Range<usize>) -> Vec<Edit> {
         at: Location { path: source.path.clone(), range },
         text,
     };
+    differences_within(&source.text, &formatted, range).map(edit).collect()
+}
+
+/// The [`differences`] of two texts that are in a part of the first. A place without extent is in the part of the line it
+/// stands in.
+pub fn differences_within(
+    before: &str,
+    after: &str,
+    range: Range<usize>,
+) -> impl Iterator<Item = (Range<usize>, String)> {
     let end = range.end.max(range.start + 1);
-    let touches = |place: &Range<usize>| match place.is_empty() {
+    differences(before, after).into_iter().filter(move |(place, _)| match place.is_empty() {
         true => range.start <= place.start && place.start <= range.end,
         false => range.start < place.end && place.start < end,
-    };
-    let edits = differences(&source.text, &formatted).into_iter();
-    edits.filter(|(place, _)| touches(place)).map(edit).collect()
+    })
 }
 
 /// In longer texts it is not looked for what both have in common: that takes time with the square of their length.

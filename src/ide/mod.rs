@@ -36,7 +36,7 @@ mod wanted;
 
 pub use answers::*;
 pub use complete::complete;
-pub use layout::differences;
+pub use layout::{differences, differences_within};
 pub use rename::{references, rename};
 pub use say::{default, hex, range};
 pub use signature::signatures;

@@ -48,6 +48,29 @@ fn check_and_diff_write_nothing() {
 }
 
 #[test]
+fn lines_are_laid_out_alone() {
+    let desk = Desk::new();
+    let loose = "group {\n    sphere{radius:1m}\n    plane{}\n}\nlet a=1\n";
+    for (lines, expected) in [
+        ("2:2", "group {\n  sphere { radius: 1m }\n    plane{}\n}\nlet a=1\n"),
+        ("3:99", "group {\n    sphere{radius:1m}\n  plane {}\n}\nlet a = 1\n"),
+        ("4:4", loose),
+        ("9:9", loose),
+        ("1:18446744073709551615", "group {\n  sphere { radius: 1m }\n  plane {}\n}\nlet a = 1\n"),
+    ] {
+        desk.put("loose.rt", loose);
+        desk.run(&format!("fmt --lines {lines} loose.rt")).expect(0, &[]);
+        assert_eq!(text(desk.get("loose.rt")), expected, "{lines}");
+    }
+    desk.put("loose.rt", loose);
+    let shown = desk.run("fmt --lines 5:5 --diff loose.rt");
+    assert!(text(shown.stdout).ends_with("\n }\n-let a=1\n+let a = 1\n"));
+    for wrong in ["0:1", "2:1", "2", "a:b", "1:", ":"] {
+        desk.run(&format!("fmt --lines {wrong} loose.rt")).expect(2, &["such as 3:7"]);
+    }
+}
+
+#[test]
 fn what_is_broken_stays_as_it_is() {
     let desk = Desk::new();
     let broken = "sphere{radius:1m}\nsphere{radius 8 }\n";

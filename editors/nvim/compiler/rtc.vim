@@ -5,5 +5,6 @@ if exists('current_compiler')
 endif
 let current_compiler = 'rtc'
 
-CompilerSet makeprg=rtc\ check\ --message-format\ short\ %:S
+let s:make = shellescape(get(g:, 'rtc_program', 'rtc'), 1) . ' check --message-format short %:S'
+execute 'CompilerSet makeprg=' . escape(s:make, ' |"\')
 CompilerSet errorformat=%f:%l:%c:\ %trror[E%n]:\ %m,%f:%l:%c:\ %tarning[W%n]:\ %m,%-G%.%#

@@ -22,10 +22,7 @@ if not vim.b.current_compiler then
 end
 
 -- With its parser tree-sitter colours and folds; without it syntax/rt.vim does.
-if pcall(vim.treesitter.start, 0, 'rt') then
-  options.foldmethod = 'expr'
-  options.foldexpr = 'v:lua.vim.treesitter.foldexpr()'
-  options.foldenable = false
+if require('rtc').start_parser(vim.api.nvim_get_current_buf()) then
   vim.b.undo_ftplugin = vim.b.undo_ftplugin
     .. ' foldmethod< foldexpr< foldenable< | lua pcall(vim.treesitter.stop)'
 end

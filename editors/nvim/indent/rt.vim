@@ -49,9 +49,20 @@ function! s:Opens(line) abort
   return open > 0
 endfunction
 
-" Whether a line goes on with the one before.
+" Whether a line goes on with the one before. An `else` that is followed by a body is a statement's.
 function! s:GoesOn(line) abort
-  return a:line =~# '^\s*\%(|>\|->\|[*+/<>]\|[=!]=\|\.\a\|\%(and\|or\|to\|then\)\>\|else\>\s*[^ {i]\)'
+  return a:line =~# '^\s*\%(|>\|->\|[*+/<>]\|[=!]=\|\.\a\|\%(and\|or\|to\|then\)\>\)'
+        \ || a:line =~# '^\s*else\>' && a:line !~# '^\s*else\s*\%(if\>\%(\%(\<then\>\)\@!.\)*\)\={'
+endfunction
+
+" The line on which the bracket opens that a line closes first of all; the line itself where it does not begin so.
+function! s:Head(number) abort
+  if getline(a:number) !~# '^\s*[])}]'
+    return a:number
+  endif
+  call cursor(a:number, indent(a:number) + 1)
+  let line = searchpair('[[({]', '', '[])}]', 'bW', {-> s:Hidden(line('.'), col('.'))}, max([1, a:number - 500]))
+  return line > 0 ? line : a:number
 endfunction
 
 function! RtIndent(number) abort
@@ -69,6 +80,7 @@ function! RtIndent(number) abort
   endif
   let [line, last] = [s:Bare(a:number), s:Bare(before)]
   let opens = s:Opens(last)
+  let went_on = s:GoesOn(s:Bare(s:Head(before)))
   let indent = indent(before)
   " Brackets that open on one line count once, and are closed by one line.
   if opens
@@ -77,9 +89,9 @@ function! RtIndent(number) abort
   if line =~# '^\s*[])}]'
     let indent -= shiftwidth()
   endif
-  if s:GoesOn(line) && !s:GoesOn(last)
+  if s:GoesOn(line) && !went_on
     let indent += shiftwidth()
-  elseif s:GoesOn(last) && !s:GoesOn(line) && !opens
+  elseif went_on && !s:GoesOn(line) && !opens
     let indent -= shiftwidth()
   endif
   return max([indent, 0])

@@ -49,11 +49,26 @@ function M.build(buffer)
   end)
 end
 
----The command that the language server is started with.
+---The program `rtc`: |g:rtc_program|.
 ---@return string
 function M.program()
-  local command = (vim.lsp.config.rtc or {}).cmd
-  return type(command) == 'table' and command[1] or 'rtc'
+  return vim.g.rtc_program or 'rtc'
+end
+
+---Colours and folds a buffer by tree-sitter, where its parser is there.
+---@param buffer integer
+---@return boolean
+function M.start_parser(buffer)
+  if not pcall(vim.treesitter.start, buffer, 'rt') then
+    return false
+  end
+  for _, window in ipairs(vim.fn.win_findbuf(buffer)) do
+    local options = vim.wo[window][0]
+    options.foldmethod = 'expr'
+    options.foldexpr = 'v:lua.vim.treesitter.foldexpr()'
+    options.foldenable = false
+  end
+  return true
 end
 
 ---Compiles the parser of the grammar in a folder to where Neovim finds it.
@@ -61,31 +76,34 @@ end
 ---@return boolean
 function M.install_parser(folder)
   local here = vim.fs.dirname(vim.fs.dirname(vim.fs.dirname(debug.getinfo(1, 'S').source:sub(2))))
-  local source = vim.fs.joinpath(folder or vim.fs.joinpath(here, 'tree-sitter-rt'), 'src')
+  local source = vim.fs.joinpath(vim.fs.normalize(folder or vim.fs.joinpath(here, 'tree-sitter-rt')), 'src')
   local target = vim.fs.joinpath(vim.fn.stdpath('data'), 'site', 'parser')
   local parser = vim.fs.joinpath(target, 'rt.so')
+  -- What is loaded is neither loaded again nor written over.
+  local _, is_loaded = pcall(vim.treesitter.language.add, 'rt')
+  local fresh = parser .. '.new'
   vim.fn.mkdir(target, 'p')
-  local done = vim
-    .system({
-      vim.env.CC or 'cc',
-      '-shared',
-      '-fPIC',
-      '-O2',
-      '-I' .. source,
-      vim.fs.joinpath(source, 'parser.c'),
-      vim.fs.joinpath(source, 'scanner.c'),
-      '-o',
-      parser,
-    }, { text = true })
-    :wait()
-  if done.code ~= 0 then
-    vim.notify('rtc: the parser does not compile: ' .. done.stderr, vim.log.levels.ERROR)
+  local command = { vim.env.CC or 'cc', '-shared', '-fPIC', '-O2', '-I' .. source }
+  vim.list_extend(command, { vim.fs.joinpath(source, 'parser.c'), vim.fs.joinpath(source, 'scanner.c'), '-o', fresh })
+  local starts, done = pcall(function()
+    return vim.system(command, { text = true }):wait()
+  end)
+  local why = not starts and done or done.code ~= 0 and done.stderr
+  if not why then
+    why = select(2, vim.uv.fs_rename(fresh, parser))
+  end
+  if why then
+    vim.notify('rtc: the parser does not compile: ' .. why, vim.log.levels.ERROR)
     return false
+  end
+  if is_loaded == true then
+    vim.notify('rtc: the parser is ' .. parser .. ', from the next start of Neovim on')
+    return true
   end
   vim.treesitter.language.add('rt', { path = parser })
   for _, buffer in ipairs(vim.api.nvim_list_bufs()) do
     if vim.bo[buffer].filetype == 'rt' then
-      vim.treesitter.start(buffer, 'rt')
+      M.start_parser(buffer)
     end
   end
   vim.notify('rtc: the parser is ' .. parser)

@@ -15,9 +15,9 @@ setlocal define=^\\s*\\%(let\\\|material\\\|param\\\|part\\\|fn\\)\\s
 let b:undo_ftplugin = 'setlocal comments< commentstring< formatoptions< expandtab< shiftwidth< softtabstop<'
       \ . ' suffixesadd< include< define<'
 
-if exists('g:rtc_format_program') || executable('rtc')
-  let &l:formatprg = get(g:, 'rtc_format_program', 'rtc') . ' fmt -'
-  let b:undo_ftplugin .= ' formatprg<'
+if has('job')
+  setlocal formatexpr=rtc#Format()
+  let b:undo_ftplugin .= ' formatexpr<'
 endif
 
 if !exists('b:current_compiler')

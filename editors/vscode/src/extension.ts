@@ -5,6 +5,9 @@ import * as vscode from "vscode";
 import { LanguageClient, type LanguageClientOptions, type ServerOptions, type ShowDocumentParams } from "vscode-languageclient/node";
 import { Previews } from "./preview";
 
+// What an editor holds: the old side of a comparison is no scene of its own, and has no folder to import from.
+const scenes = ["file", "untitled"].map(scheme => ({ scheme, language: "rt" }));
+
 let client: LanguageClient | undefined;
 const previews = new Previews();
 
@@ -32,7 +35,7 @@ async function start(): Promise<void> {
   if (!vscode.workspace.isTrusted) return;
   const server: ServerOptions = { command: program(), args: ["lsp", ...setting<string[]>("arguments", [])] };
   const options: LanguageClientOptions = {
-    documentSelector: [{ language: "rt" }],
+    documentSelector: scenes,
     middleware: {
       window: {
         showDocument: async asked => ({ success: await show(asked) }),
@@ -93,7 +96,7 @@ async function show({ uri, external, selection }: ShowDocumentParams): Promise<b
 /** Tells the server where the cursor is: the preview lights up what stands there. */
 async function moved(change: vscode.TextEditorSelectionChangeEvent): Promise<void> {
   const { document, selection } = change.textEditor;
-  if (document.languageId !== "rt" || !client?.isRunning()) return;
+  if (!vscode.languages.match(scenes, document) || !client?.isRunning()) return;
   const at = client.code2ProtocolConverter.asTextDocumentPositionParams(document, selection.active);
   await client.sendNotification("rtc/cursor", at);
 }

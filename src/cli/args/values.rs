@@ -8,6 +8,7 @@ use rt_lang::lower::MAX_PIXELS;
 use rt_lang::output::Depth;
 use rt_lang::schema::{Key, KindId, Tonemap, Word, camera, render};
 use std::net::{Ipv4Addr, SocketAddr};
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 /// More threads than any machine has use for.
@@ -69,6 +70,15 @@ pub fn crop(text: &str) -> Result<[u32; 4], String> {
         Ok([_, _, 0, _] | [_, _, _, 0]) => Err("the window has no pixels".into()),
         Ok(window) if text.split(',').count() == 4 => Ok(window),
         _ => Err("x, y, width and height in whole pixels, such as 0,0,320,240".into()),
+    }
+}
+
+pub fn lines(text: &str) -> Result<RangeInclusive<usize>, String> {
+    let parts =
+        text.split_once(':').and_then(|(first, last)| Some((first.parse().ok()?, last.parse().ok()?)));
+    match parts {
+        Some((first, last)) if (1..=last).contains(&first) => Ok(first..=last),
+        _ => Err("the first and the last line, counted from 1, such as 3:7".into()),
     }
 }
 

@@ -1,5 +1,6 @@
 //! What the server can do.
 
+use super::client::Client;
 use super::commands;
 use super::document::Encoding;
 use super::requests::tokens::legend;
@@ -9,9 +10,9 @@ use gen_lsp_types as lsp;
 const TRIGGERS: [&str; 6] = [".", ":", "\"", "/", "@", "#"];
 
 /// What the server answers to `initialize`.
-pub fn initialized(encoding: Encoding) -> lsp::InitializeResult {
+pub fn initialized(client: &Client, encoding: Encoding) -> lsp::InitializeResult {
     lsp::InitializeResult {
-        capabilities: capabilities(encoding),
+        capabilities: capabilities(client, encoding),
         server_info: Some(lsp::ServerInfo {
             name: "rtc".into(),
             version: Some(env!("CARGO_PKG_VERSION").into()),
@@ -33,7 +34,7 @@ pub fn watched() -> lsp::RegistrationParams {
     lsp::RegistrationParams { registrations: vec![registration] }
 }
 
-fn capabilities(encoding: Encoding) -> lsp::ServerCapabilities {
+fn capabilities(client: &Client, encoding: Encoding) -> lsp::ServerCapabilities {
     let words = |words: &[&str]| Some(words.iter().map(|word| word.to_string()).collect::<Vec<_>>());
     lsp::ServerCapabilities {
         position_encoding: Some(match encoding {
@@ -61,19 +62,27 @@ fn capabilities(encoding: Encoding) -> lsp::ServerCapabilities {
         document_highlight_provider: Some(lsp::DocumentHighlightProvider::Bool(true)),
         document_symbol_provider: Some(lsp::DocumentSymbolProvider::Bool(true)),
         workspace_symbol_provider: Some(lsp::WorkspaceSymbolProvider::Bool(true)),
-        code_action_provider: Some(lsp::CodeActionProvider::CodeActionOptions(lsp::CodeActionOptions {
-            code_action_kinds: Some(vec![lsp::CodeActionKind::QuickFix, lsp::CodeActionKind::SourceFixAll]),
-            ..lsp::CodeActionOptions::default()
-        })),
+        code_action_provider: client.mends.then(|| {
+            lsp::CodeActionProvider::CodeActionOptions(lsp::CodeActionOptions {
+                code_action_kinds: Some(vec![
+                    lsp::CodeActionKind::QuickFix,
+                    lsp::CodeActionKind::SourceFixAll,
+                ]),
+                ..lsp::CodeActionOptions::default()
+            })
+        }),
         code_lens_provider: Some(lsp::CodeLensOptions::default()),
         document_link_provider: Some(lsp::DocumentLinkOptions::default()),
         color_provider: Some(lsp::ColorProvider::Bool(true)),
         document_formatting_provider: Some(lsp::DocumentFormattingProvider::Bool(true)),
         document_range_formatting_provider: Some(lsp::DocumentRangeFormattingProvider::Bool(true)),
-        rename_provider: Some(lsp::RenameProvider::RenameOptions(lsp::RenameOptions {
-            prepare_provider: Some(true),
-            ..lsp::RenameOptions::default()
-        })),
+        rename_provider: Some(match client.prepares {
+            true => lsp::RenameProvider::RenameOptions(lsp::RenameOptions {
+                prepare_provider: Some(true),
+                ..lsp::RenameOptions::default()
+            }),
+            false => lsp::RenameProvider::Bool(true),
+        }),
         folding_range_provider: Some(lsp::FoldingRangeProvider::Bool(true)),
         selection_range_provider: Some(lsp::SelectionRangeProvider::Bool(true)),
         execute_command_provider: Some(lsp::ExecuteCommandOptions {

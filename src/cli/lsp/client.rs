@@ -23,6 +23,12 @@ pub struct Client {
     pub markdown: bool,
     /// Understands Markdown in what is said of completions.
     pub markdown_docs: bool,
+    /// Understands Markdown in what is said of calls.
+    pub markdown_calls: bool,
+    /// Takes mends as edits, and not only as commands.
+    pub mends: bool,
+    /// Asks whether something can be renamed.
+    pub prepares: bool,
     /// Tells of files that change, if asked to.
     pub watches: bool,
     /// Shows how far something is.
@@ -59,6 +65,12 @@ impl Client {
             pictures: at("general/markdown/parser").is_some_and(|parser| parser == "marked"),
             markdown: has("textDocument/hover/contentFormat", "markdown"),
             markdown_docs: has("textDocument/completion/completionItem/documentationFormat", "markdown"),
+            markdown_calls: has(
+                "textDocument/signatureHelp/signatureInformation/documentationFormat",
+                "markdown",
+            ),
+            mends: at("textDocument/codeAction/codeActionLiteralSupport").is_some(),
+            prepares: can("textDocument/rename/prepareSupport"),
             watches: can("workspace/didChangeWatchedFiles/dynamicRegistration"),
             progress: can("window/workDoneProgress"),
             shows: can("window/showDocument/support"),

@@ -283,7 +283,7 @@ impl Server {
             pages: Pages::new(self.interrupt.clone()),
             memory: Arc::default(),
         });
-        serde_json::to_value(initialized(view.session.encoding))
+        serde_json::to_value(initialized(&view.session.client, view.session.encoding))
             .map_err(|error| Failure::new(ErrorCode::InternalError, error.to_string()))
     }
 

@@ -127,6 +127,10 @@ impl Files for World {
                 Kept::Whole => Ok(document.text.whole().as_bytes().into()),
             },
             (None, Some(disk)) => disk.read(path, most),
+            // Nothing is beside a text that is no file.
+            (None, None) if self.names.base.as_os_str().is_empty() => {
+                Err(FileError::Unreadable("this text has no folder yet; save it first".into()))
+            }
             (None, None) => Err(FileError::Missing),
         }
     }

@@ -376,3 +376,28 @@ fn a_file_that_somebody_else_changes_is_seen_where_the_client_does_not_tell() {
     assert_eq!(client.codes("woods.rt", None), Vec::<String>::new());
     assert_eq!(client.end(), Some(0));
 }
+
+#[test]
+fn what_the_editor_cannot_take_is_not_sent() {
+    let desk = Desk::new();
+    let text = "/// Of `x`.\nfn half(x: number) -> number = x / 2\nsphere { radius: 1m * half(2) }\n";
+    let able = json!({
+        "rename": { "prepareSupport": true },
+        "codeAction": { "codeActionLiteralSupport": { "codeActionKind": { "valueSet": ["quickfix"] } } },
+        "signatureHelp": { "signatureInformation": { "documentationFormat": ["plaintext", "markdown"] } },
+    });
+    for (can, kind) in [(true, "markdown"), (false, "plaintext")] {
+        let mut client = Client::silent(&desk);
+        let told = if can { able.clone() } else { json!({}) };
+        let said = client.ask("initialize", json!({ "capabilities": { "textDocument": told } })).unwrap();
+        let said = &said["capabilities"];
+        let renames = if can { json!({ "prepareProvider": true }) } else { json!(true) };
+        assert_eq!(said["renameProvider"], renames);
+        assert_eq!(said["codeActionProvider"].is_object(), can, "{said}");
+        client.tell("initialized", json!({}));
+        client.open("a.rt", text);
+        let help = client.at("textDocument/signatureHelp", "a.rt", 2, 27).unwrap();
+        assert_eq!(help["signatures"][0]["documentation"]["kind"], kind, "{help}");
+        assert_eq!(client.end(), Some(0));
+    }
+}

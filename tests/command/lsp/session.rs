@@ -177,6 +177,21 @@ fn an_edit_that_makes_no_sense_leaves_no_wrong_text() {
 }
 
 #[test]
+fn what_is_beside_a_text_that_is_no_file_is_not_known() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    let uri = "git:/scenes/a.rt?%7B%22ref%22%3A%22~%22%7D";
+    let text = "import \"lib.rt\" as lib\nsphere { radius: 1m }\n";
+    let item = json!({ "uri": uri, "languageId": "rt", "version": 1, "text": text });
+    client.tell("textDocument/didOpen", json!({ "textDocument": item }));
+    let said = client.wait("diagnostics", |message| message["params"]["uri"] == uri);
+    let found = &said["params"]["diagnostics"][0];
+    assert_eq!(found["code"], "E0501");
+    assert!(found["message"].as_str().unwrap().contains("save it first"), "{found}");
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
 fn a_document_that_was_never_saved_is_understood() {
     let desk = Desk::new();
     let mut client = Client::new(&desk);

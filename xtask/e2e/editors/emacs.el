@@ -1,6 +1,7 @@
 ;;; What a person does in Emacs, in batch: our mode by itself, and eglot with the built server.  -*- lexical-binding: t -*-
 ;;
-;; Usage: emacs --batch -l emacs.el, in an empty folder, with RTC and ROOT in the environment.
+;; Usage: emacs --batch -l emacs.el, in an empty folder, with RTC and ROOT in the environment.  An Emacs that has
+;; tree-sitter compiles the grammar first, and takes the mode that colours by it.
 
 (require 'cl-lib)
 (load (expand-file-name "init" (file-name-directory load-file-name)) nil t)
@@ -35,41 +36,75 @@ camera { from: (0, 1, 4)m, look: ball }
   (eglot--signal-textDocument/didChange)
   (goto-char (match-beginning 0)))
 
+(defun names (entry)
+  "The names of what ENTRY of an index leads to."
+  (if (consp (cdr entry)) (mapcar #'names (cdr entry)) (car entry)))
+
 (defun face (place)
   (goto-char (point-min))
   (search-forward place)
   (get-text-property (match-beginning 0) 'face))
 
+(defconst trees (and (fboundp 'treesit-available-p) (treesit-available-p)))
+(defconst mode (if trees 'rt-ts-mode 'rt-mode))
+(when trees
+  (defvar treesit-language-source-alist)
+  (setq treesit-language-source-alist `((rt ,root nil "editors/tree-sitter-rt/src")))
+  (treesit-install-language-grammar 'rt)
+  (tell "the grammar is compiled"))
+
 (with-temp-file "scene.rt" (insert scene))
 (find-file "scene.rt")
-(check (eq major-mode 'rt-mode) (format "the mode is %s" major-mode))
+(check (eq major-mode mode) (format "the mode is %s" major-mode))
 (font-lock-ensure)
-(dolist (wanted '(("ball on" font-lock-comment-face)
+(dolist (wanted `(("ball on" font-lock-comment-face)
                   ("param" font-lock-keyword-face)
                   ("length" font-lock-type-face)
                   ("diffuse" font-lock-type-face)
-                  ("color" font-lock-variable-name-face)
+                  ("size" font-lock-variable-name-face)
+                  ("color" ,(if trees 'font-lock-property-name-face 'font-lock-variable-name-face))
                   ("#d94f30" font-lock-constant-face)
                   ("50cm" font-lock-constant-face)))
   (check (eq (face (car wanted)) (cadr wanted)) (format "%s is %s" (car wanted) (face (car wanted)))))
 (tell "words have their colours")
 
-(let ((garden (expand-file-name "examples/garden/garden.rt" root)))
+(check (eq (key-binding (kbd "C-c C-p")) 'rt-preview) "C-c C-p opens the preview")
+(define-key (symbol-value (intern (format "%s-map" mode))) (kbd "C-c C-x") #'ignore)
+(check (eq (key-binding (kbd "C-c C-x")) 'ignore) "keys can be added")
+(tell "keys do what they should")
+
+(dolist (file (directory-files-recursively (expand-file-name "examples" root) "\\.rt\\'"))
   (with-temp-buffer
-    (insert-file-contents garden)
+    (insert-file-contents file)
     (let ((written (buffer-string)))
-      (rt-mode)
+      (funcall mode)
       (goto-char (point-min))
       (while (not (eobp)) (delete-horizontal-space) (forward-line))
       (indent-region (point-min) (point-max))
-      (check (equal (buffer-string) written) (format "garden.rt is indented otherwise:\n%s" (buffer-string))))))
+      (check (equal (buffer-string) written) (format "%s is indented otherwise:\n%s" file (buffer-string))))))
 (with-temp-buffer
   (let ((noted "sphere {\n  /* a\n     b */\n  radius: 1m // /* c\n}\nlet a = 4\n  / 2\n  * 3\n/*\n * d\n    */\nplane {\n}\n"))
     (insert noted)
-    (rt-mode)
+    (funcall mode)
     (indent-region (point-min) (point-max))
     (check (equal (buffer-string) noted) (format "comments are indented otherwise:\n%s" (buffer-string)))))
 (tell "what is laid out is indented so")
+
+(require 'imenu)
+(with-temp-buffer
+  (insert "param size: length = 1m\n\npart stool {\n  param wood: number = 1\n  sphere leg {\n    radius: size\n  }\n}\n"
+          "fn half(x: number) -> number = x / 2\nlet a = 1\nstool {}\n")
+  (funcall mode)
+  (let ((listed (imenu--make-index-alist t)))
+    (dolist (wanted '(("Params" "size" "wood") ("Parts" "stool") ("Functions" "half") ("Values" "a") ("Things" "leg")))
+      (let ((found (flatten-tree (mapcar #'names (cdr (assoc (car wanted) listed))))))
+        (check (equal (seq-remove (lambda (name) (equal name " ")) found) (cdr wanted)) (format "%S" listed)))))
+  (when trees
+    (re-search-backward "radius")
+    (check (equal (add-log-current-defun) "stool.leg") (format "%S" (add-log-current-defun)))
+    (beginning-of-defun)
+    (check (looking-at "[ \t]*sphere leg") (buffer-substring (point) (line-end-position)))))
+(tell "what is declared is listed")
 
 (apply #'eglot--connect (eglot--guess-contact))
 (check (eglot-current-server) "the server starts")
@@ -127,8 +162,32 @@ camera { from: (0, 1, 4)m, look: ball }
     (eglot-handle-request (eglot-current-server) 'window/showDocument
                           :uri (plist-get (eglot--TextDocumentIdentifier) :uri) :selection place))
   (check (looking-at "ball { at") (buffer-substring (point) (line-end-position))))
+(save-window-excursion
+  (with-temp-file "clicked.rt" (insert "// A floor.\n/* \N{GRINNING FACE} */ plane { }\n"))
+  (find-file "clicked.rt")
+  (search-forward "plane ")
+  (let ((place (eglot--pos-to-lsp-position)))
+    (goto-char (point-min))
+    (eglot-handle-request (eglot-current-server) 'window/showDocument
+                          :uri (plist-get (eglot--TextDocumentIdentifier) :uri)
+                          :selection (list :start place :end place)))
+  (check (looking-at "{ }") (buffer-substring (point) (line-end-position))))
 (tell "a place that is clicked on in the preview is shown")
 
 (save-buffer)
 (eglot-shutdown (eglot-current-server))
 (tell "the server ends when it is told to")
+
+(with-temp-file "it's 100% wrong.rt" (insert "sphere { radius: 1m }\nsphere { radius: 8deg }\n"))
+(find-file "it's 100% wrong.rt")
+(require 'compile)
+(dolist (command (list #'rt-build (lambda () (compile compile-command))))
+  (goto-char (point-min))
+  (save-window-excursion
+    (funcall command)
+    (wait "the program ends" (lambda () (not (get-buffer-process "*compilation*"))))
+    (with-current-buffer "*compilation*" (check (string-match-p "E0203" (buffer-string)) (buffer-string)))
+    (next-error 1 t)
+    (check (and (string-suffix-p "wrong.rt" (buffer-name)) (looking-at "8deg"))
+           (format "%S %S" (current-buffer) (buffer-substring (point) (line-end-position))))))
+(tell "errors of a build can be gone to")

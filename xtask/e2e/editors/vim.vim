@@ -33,21 +33,36 @@ function Run()
   endfor
   call Tell('words have their colours')
 
-  let written = readfile($ROOT .. '/examples/garden/garden.rt')
-  edit garden.rt
-  call setline(1, written)
-  %left
-  normal! gg=G
-  call Check(getline(1, '$') == written, "garden.rt is indented otherwise:\n" .. join(getline(1, '$'), "\n"))
-  bwipeout!
+  for scene in glob($ROOT .. '/examples/**/*.rt', 0, 1)
+    let written = readfile(scene)
+    edit laid-out.rt
+    call setline(1, written)
+    %left
+    normal! gg=G
+    call Check(getline(1, '$') == written, scene .. " is indented otherwise:\n" .. join(getline(1, '$'), "\n"))
+    bwipeout!
+  endfor
   call Tell('what is laid out is indented so')
 
-  call writefile(['plane   {  }'], 'plain.rt')
-  edit plain.rt
-  normal! gggqG
-  call Check(getline(1, '$') == ['plane {}'], 'gq gives ' .. join(getline(1, '$'), "\n"))
-  call Tell('gq lays out')
-  bwipeout!
+  let loose = ['// A ball.', 'group {', '    sphere{radius:1m}', '    plane{}', '}', '', '', 'let a=1']
+  for [written, typed, wanted] in [
+    \ [loose, 'gggqG', ['// A ball.', 'group {', '  sphere { radius: 1m }', '  plane {}', '}', '', 'let a = 1']],
+    \ [loose, '3Ggqq', loose[:1] + ['  sphere { radius: 1m }'] + loose[3:]],
+    \ [loose, '4Ggqj', loose[:2] + ['  plane {}'] + loose[4:]],
+    \ [loose, 'Ggqq', loose[:5] + ['let a = 1']],
+    \ [loose, '2Ggqq', loose],
+    \ [['plane   {'], 'gggqG', ['plane   {']],
+    \ [['plane{}', 'plane   { a b }'], 'gggqG', ['plane {}', 'plane   { a b }']],
+    \ [['plane { normal: (1,', '  0, 0) }', 'let a=1'], 'ggVgq', ['plane { normal: (1, 0, 0) }', 'let a=1']],
+    \ [[''], 'gqq', ['']],
+    \ ]
+    call writefile(written, 'loose.rt')
+    edit! loose.rt
+    execute 'silent normal!' typed
+    call Check(getline(1, '$') == wanted, typed .. " gives\n" .. join(getline(1, '$'), "\n"))
+    bwipeout!
+  endfor
+  call Tell('gq lays out the lines that are meant, and leaves what is broken')
 
   call writefile(['sphere { radius: 8deg }'], 'wrong.rt')
   edit wrong.rt
@@ -55,7 +70,22 @@ function Run()
   silent make!
   let found = getqflist()
   call Check(len(found) == 1 && found[0].lnum == 1 && found[0].col == 18 && found[0].nr == 203, string(found))
+  bwipeout!
   call Tell(':make fills the list of errors')
+
+  " A program of one's own, on a path that a shell would take apart.
+  let g:rtc_program = getcwd() .. "/it's 100% (mine)/rtc"
+  call mkdir(fnamemodify(g:rtc_program, ':h'))
+  call system('ln -s ' .. shellescape($RTC) .. ' ' .. shellescape(g:rtc_program))
+  let $PATH = '/usr/bin:/bin'
+  edit wrong.rt
+  call setqflist([])
+  silent make!
+  call Check(len(getqflist()) == 1 && getqflist()[0].nr == 203, string(getqflist()))
+  call setline(1, 'plane{}')
+  silent normal! gqq
+  call Check(getline(1) == 'plane {}', 'gq gives ' .. getline(1))
+  call Tell('another program is taken where one is named')
 endfunction
 
 try

@@ -20,14 +20,14 @@ pub fn signatures(asked: &mut Asked, params: lsp::SignatureHelpParams) -> Answer
         return Err(failure);
     }
     let help = |found: Vec<Signature>| lsp::SignatureHelp {
-        signatures: found.into_iter().map(signature).collect(),
+        signatures: found.into_iter().map(|found| signature(found, session.client.markdown_calls)).collect(),
         active_signature: Some(0),
         active_parameter: None,
     };
     Ok(Some(found).filter(|found| !found.is_empty()).map(help))
 }
 
-fn signature(signature: Signature) -> lsp::SignatureInformation {
+fn signature(signature: Signature, markdown: bool) -> lsp::SignatureInformation {
     let Signature { label, doc, parameters, active } = signature;
     // Counted in UTF-16 whatever else is agreed on.
     let units = |byte: usize| label[..label.floor_char_boundary(byte)].encode_utf16().count() as u32;
@@ -36,10 +36,10 @@ fn signature(signature: Signature) -> lsp::SignatureInformation {
             units(parameter.range.start),
             units(parameter.range.end),
         )),
-        documentation: documentation(&parameter.doc),
+        documentation: documentation(&parameter.doc, markdown),
     };
     lsp::SignatureInformation {
-        documentation: documentation(&doc),
+        documentation: documentation(&doc, markdown),
         parameters: Some(parameters.iter().map(parameter).collect()),
         // One that is not there marks none.
         active_parameter: Some(lsp::ActiveParameter::Int(active.unwrap_or(parameters.len()) as u32)),
@@ -47,7 +47,8 @@ fn signature(signature: Signature) -> lsp::SignatureInformation {
     }
 }
 
-fn documentation(text: &str) -> Option<lsp::Documentation> {
-    let markup = lsp::MarkupContent { kind: lsp::MarkupKind::Markdown, value: text.into() };
+fn documentation(text: &str, markdown: bool) -> Option<lsp::Documentation> {
+    let kind = if markdown { lsp::MarkupKind::Markdown } else { lsp::MarkupKind::PlainText };
+    let markup = lsp::MarkupContent { kind, value: text.into() };
     (!text.is_empty()).then_some(lsp::Documentation::MarkupContent(markup))
 }
