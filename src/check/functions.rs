@@ -127,8 +127,7 @@ functions! {
 /// A way to call a built-in function.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Way {
-    /// What it takes, in order: each name with its type, as params are declared. The last is `…`, without a type, where more may
-    /// follow.
+    /// What it takes, in order: each name with its type. The last is `…`, without a type, where more may follow.
     pub takes: Vec<(&'static str, &'static str)>,
     /// The type of what it gives.
     pub gives: &'static str,
