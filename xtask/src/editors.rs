@@ -1,5 +1,6 @@
 //! The packages for editors, in the editors themselves: Neovim, Vim, Emacs, and what Visual Studio Code is given.
 
+use super::preview::browser;
 use super::{Outcome, Place, fresh, root, run, tools};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -54,7 +55,11 @@ fn alone(program: &Path, place: &Place) -> Command {
 
 fn neovim(place: &Place) -> Outcome {
     let program = tools::neovim(&place.desk.with_file_name("neovim"))?.display().to_string();
-    run(alone(program.as_ref(), place).args(["--headless", "-u"]).arg(script(place, "neovim.lua")))?;
+    // For who is at the page of its preview.
+    let browser = browser(&place.desk)?;
+    let mut checks = alone(program.as_ref(), place);
+    checks.env("PLAYWRIGHT", browser).args(["--headless", "-u"]).arg(script(place, "neovim.lua"));
+    run(&mut checks)?;
     let look = "set termguicolors number signcolumn=yes wrap | colorscheme habamax";
     let messages = "lua vim.diagnostic.config({ virtual_lines = true })";
     let init = script(place, "init.lua");

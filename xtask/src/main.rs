@@ -91,7 +91,7 @@ cargo xtask e2e [STEP…]
   preview    the page of `rtc watch` in a browser (chromium, of Debian; playwright-core, from npm, which needs node)
   mattes     Cryptomatte by an independent reader (from PyPI)
   editors    the packages for editors, in Neovim (from PyPI), Vim, Emacs (vim, emacs-nox and elpa-eglot, of Debian) and as
-             what Visual Studio Code is given (node and npm); pictures of them by chromium, of Debian
+             what Visual Studio Code is given (node and npm); pictures of them, and a preview, in chromium, of Debian
   processors the same bytes on other x86-64 processors, by emulation (qemu-user)
   arm        the same on an ARM with NEON (gcc-aarch64-linux-gnu, and rustup for its standard library)
   readme     every command of the README, in a fresh clone of HEAD

@@ -27,7 +27,7 @@ fn script(root: &Path, name: &str, rtc: &Path, tools: &Path, desk: &Path, argume
 }
 
 /// Has a browser at hand, and what drives it beside a step's folder.
-fn browser(desk: &Path) -> Result<PathBuf, String> {
+pub fn browser(desk: &Path) -> Result<PathBuf, String> {
     tools::chromium()?;
     let folder = desk.with_file_name("playwright");
     tools::playwright(&folder)?;

@@ -29,7 +29,7 @@ const NO_PICTURE: &str = "there is no picture yet";
 /// How long a text may take to say what was put there.
 const PATIENCE: Duration = Duration::from_secs(3);
 /// What is said where it does not.
-const NOT_THERE: &str = "the editor said that it is written, but its text is another: try it again";
+const NOT_THERE: &str = "it was written, but the text says something else: try it again";
 
 /// A value that was put into the text.
 struct Written {

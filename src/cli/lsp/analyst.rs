@@ -19,6 +19,8 @@ pub struct Meaning {
     pub analysis: Analysis,
     /// The files that were asked for.
     pub reads: BTreeSet<Key>,
+    /// When those of them were edited last that were open.
+    edited: BTreeMap<Key, u64>,
     names: Names,
     /// The texts with their lines, as far as they were wanted.
     texts: Vec<OnceLock<Text>>,
@@ -37,7 +39,14 @@ impl Meaning {
             let _ = text.set(document.text.clone());
         }
         let (names, reads) = (world.names().clone(), world.asked());
-        Some(Meaning { analysis, reads, names, texts, encoding: view.session.encoding })
+        let edited = edits(view, &reads).map(|(key, edited)| (key.clone(), edited)).collect();
+        Some(Meaning { analysis, reads, edited, names, texts, encoding: view.session.encoding })
+    }
+
+    /// Whether it was found in what is open, as far as it is made of that: which version of a text an edit is of is told by
+    /// what is open.
+    fn is_of(&self, view: &View) -> bool {
+        edits(view, &self.reads).eq(self.edited.iter().map(|(key, edited)| (key, *edited)))
     }
 
     /// The text of a source, with its lines.
@@ -93,6 +102,11 @@ impl Meaning {
     }
 }
 
+/// When those of some files were edited last that are open, in their order.
+fn edits<'f>(view: &View, files: &'f BTreeSet<Key>) -> impl Iterator<Item = (&'f Key, u64)> {
+    files.iter().filter_map(|key| Some((key, view.documents.get(key)?.edited)))
+}
+
 /// The position of a byte.
 pub fn position(text: &Text, byte: usize, encoding: Encoding) -> Position {
     let Place { line, character } = text.place(byte, encoding);
@@ -128,6 +142,8 @@ impl Analyst {
     ) -> Option<Arc<Meaning>> {
         if let Some((stamp, meaning)) = self.known.get(key)
             && *stamp == document.stamp
+            // That it reads what has changed since may not be known yet.
+            && meaning.is_of(view)
         {
             return Some(meaning.clone());
         }
@@ -141,5 +157,52 @@ impl Analyst {
     /// Forgets what is closed.
     pub fn keep(&mut self, view: &View) {
         self.known.retain(|key, _| view.documents.get(key).is_some());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::client::Client;
+    use super::super::documents::Documents;
+    use super::super::pages::Pages;
+    use super::super::view::Session;
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn what_was_found_in_another_version_of_what_is_read_is_found_anew() {
+        let session = Session {
+            client: Client::default(),
+            encoding: Encoding::Utf16,
+            root: None,
+            pages: Pages::default(),
+            memory: Arc::default(),
+        };
+        let mut documents = Documents::default();
+        let uri = "file:///nowhere/b.rt";
+        let read = documents.open(uri.to_string().into(), 1, "let seat = 1m\n".into());
+        let text = "import \"b.rt\" as b\nsphere { radius: b.seat }\n";
+        let own = documents.open("file:///nowhere/a.rt".to_string().into(), 1, text.into());
+        let mut view = View { session: Arc::new(session), documents, folders: vec![] };
+        let mut analyst = Analyst::default();
+        let mut look = |view: &View| {
+            let document = view.documents.get(&own).unwrap().clone();
+            let mut is_new = false;
+            let meaning = analyst.meaning(view, &own, &document, &|| false, |_| is_new = true).unwrap();
+            let texts: Vec<String> =
+                meaning.analysis.sources.iter().map(|(_, source)| source.text.clone()).collect();
+            (is_new, texts.concat())
+        };
+        let (is_new, texts) = look(&view);
+        assert!(is_new && texts.contains("seat = 1m"), "{texts}");
+        assert!(!look(&view).0);
+        // Nobody has said that the one reads the other.
+        let changes = json!([{ "text": "let seat = 2m\n" }]);
+        let changed = json!({ "textDocument": { "uri": uri, "version": 2 }, "contentChanges": changes });
+        view.documents.change(&read, serde_json::from_value(changed).unwrap(), Encoding::Utf16);
+        let (is_new, texts) = look(&view);
+        assert!(is_new && texts.contains("seat = 2m"), "{texts}");
+        view.documents.close(&read);
+        assert!(look(&view).0);
     }
 }

@@ -1,4 +1,5 @@
-//! The text of a document, for the preview that changes it: in the editor as long as it is open there, and in its file otherwise.
+//! The text of a document, for the preview that changes it: in the editor as long as it is open there, and in its file
+//! otherwise.
 //!
 //! An editor may have gone on when it is asked to change a text. So it is told of which version the change is, and of no
 //! version it is asked for two.

@@ -47,7 +47,9 @@ impl Client {
         let has = |path: &str, word: &str| {
             at(path).and_then(Value::as_array).is_some_and(|all| all.iter().any(|one| one == word))
         };
-        let document_changes = can("workspace/workspaceEdit/documentChanges");
+        // Who makes and moves files takes changes with versions too: the protocol has them in one list.
+        let document_changes = can("workspace/workspaceEdit/documentChanges")
+            || at("workspace/workspaceEdit/resourceOperations").is_some_and(Value::is_array);
         Client {
             snippets: can("textDocument/completion/completionItem/snippetSupport"),
             document_changes,
@@ -95,6 +97,20 @@ mod tests {
             "textDocument": {"hover": {"contentFormat": ["plaintext", "markdown", 4]}},
         }});
         assert_eq!(Client::read(&some), Client { progress: true, markdown: true, ..Client::default() });
+    }
+
+    #[test]
+    fn edits_are_of_a_version_where_they_can_be() {
+        for (edits, takes) in [
+            (json!({ "applyEdit": true, "workspaceEdit": { "documentChanges": true } }), true),
+            // As Neovim says it.
+            (json!({ "applyEdit": true, "workspaceEdit": { "resourceOperations": ["create"] } }), true),
+            (json!({ "applyEdit": true, "workspaceEdit": {} }), false),
+            (json!({ "workspaceEdit": { "documentChanges": true } }), false),
+        ] {
+            let client = Client::read(&json!({ "capabilities": { "workspace": edits } }));
+            assert_eq!(client.takes_edits, takes, "{edits}");
+        }
     }
 
     #[test]

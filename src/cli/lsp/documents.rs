@@ -5,7 +5,7 @@
 
 use super::document::{Encoding, Place, Text};
 use super::uri;
-use gen_lsp_types::{Position, Range, Uri, VersionedTextDocumentIdentifier};
+use gen_lsp_types::{Position, Range, Uri};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -63,10 +63,19 @@ pub enum Kept {
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Changed {
-    /// Which, and what the client calls what it is now.
-    pub text_document: VersionedTextDocumentIdentifier,
+    /// Which.
+    pub text_document: Named,
     #[serde(default)]
     content_changes: Value,
+}
+
+/// A document, and what the client calls what it is now, if that is a number.
+#[derive(Debug, Deserialize)]
+pub struct Named {
+    /// Its address.
+    pub uri: Uri,
+    #[serde(default)]
+    version: Value,
 }
 
 /// A change of a text, or of a part of it.
@@ -204,7 +213,8 @@ impl Documents {
             Value::Array(changes) => changes.into_iter().for_each(|change| document.change(change, encoding)),
             _ => document.lose(Kept::Lost),
         }
-        document.version = changed.text_document.version;
+        let version = changed.text_document.version.as_i64().and_then(|version| version.try_into().ok());
+        document.version = version.unwrap_or(document.version);
         document.edited = self.stamps + 1;
         self.touch(key);
         true

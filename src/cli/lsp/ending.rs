@@ -12,16 +12,16 @@ const PERIOD: Duration = Duration::from_secs(1);
 /// How long the process may take to end by itself.
 pub const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Ends the process where it has not done so by itself a while after there was nobody left to serve. Whoever waits until the client
-/// takes a message may wait for ever.
+/// Ends the process where it has not done so by itself a while after there was nobody left to serve. Whoever waits until the
+/// client takes a message may wait for ever.
 pub fn end_soon(interrupt: &Interrupt) -> ! {
     sleep(PATIENCE);
     interrupt.close();
     std::process::exit(Exit::Diagnostics as i32)
 }
 
-/// Tells when the client is gone, by the number of its process as `initialize` has it, and ends with it. What cannot be found at the
-/// beginning is not looked for: the number may be of another machine, or of one within this.
+/// Tells when the client is gone, by the number of its process as `initialize` has it, and ends with it. What cannot be found
+/// at the beginning is not looked for: the number may be of another machine, or of one within this.
 pub fn with_client(params: &Value, interrupt: &Interrupt, gone: impl FnOnce() + Send + 'static) {
     let process = params.get("processId").and_then(Value::as_i64).and_then(|id| i32::try_from(id).ok());
     let Some(process) = process.filter(|process| *process > 0 && is_there(*process)) else { return };

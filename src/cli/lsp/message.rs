@@ -40,8 +40,11 @@ pub fn read(body: &[u8]) -> Result<Message, Refusal> {
     if values(body) > MOST_VALUES {
         return Err(Refusal::unreadable(format!("a message has at most {MOST_VALUES} values")));
     }
-    let value: Value = serde_json::from_slice(body)
-        .map_err(|error| Refusal::unreadable(format!("this is no JSON: {error}")))?;
+    let value = serde_json::from_slice(body).or_else(|error| match paired(body) {
+        Some(body) => serde_json::from_slice(&body),
+        None => Err(error),
+    });
+    let value: Value = value.map_err(|error| Refusal::unreadable(format!("this is no JSON: {error}")))?;
     let invalid = |id: Value, what: &str| Err(Refusal::new(id, ErrorCode::InvalidRequest, what));
     let Value::Object(mut fields) = value else {
         return invalid(Value::Null, "a message is an object");
@@ -72,6 +75,30 @@ pub fn body(message: &Message) -> Vec<u8> {
     let mut value = serde_json::to_value(message).unwrap_or_default();
     value["jsonrpc"] = "2.0".into();
     value.to_string().into_bytes()
+}
+
+/// The same text without halves of characters: editors that count in units of 16 bits may send one, and a text is held in whole
+/// characters. In its place comes a character of one unit, so that what is behind stays where it is. None where there is no
+/// such half.
+fn paired(body: &[u8]) -> Option<Vec<u8>> {
+    let unit = |at: usize| {
+        let digits = body.get(at..at + 6)?.strip_prefix(b"\\u")?;
+        u16::from_str_radix(std::str::from_utf8(digits).ok()?, 16).ok()
+    };
+    let (mut mended, mut at) = (None, 0);
+    while at < body.len() {
+        at += match (body[at], unit(at)) {
+            (b'\\', Some(0xd800..0xdc00)) if matches!(unit(at + 6), Some(0xdc00..0xe000)) => 12,
+            (b'\\', Some(0xd800..0xe000)) => {
+                mended.get_or_insert_with(|| body.to_vec())[at..at + 6].copy_from_slice(b"\\ufffd");
+                6
+            }
+            // Whatever it escapes.
+            (b'\\', _) => 2,
+            _ => 1,
+        };
+    }
+    mended
 }
 
 /// About how many values a text of JSON makes: never fewer.
@@ -120,6 +147,22 @@ mod tests {
         assert_eq!(code(&many).0, ErrorCode::ParseError as i32);
         let text = format!(r#"{{"method":"a","params":"{}\",,"}}"#, ",[{".repeat(MOST_VALUES));
         assert!(read(text.as_bytes()).is_ok());
+    }
+
+    #[test]
+    fn half_a_character_keeps_its_place() {
+        for (text, read_as) in [
+            (r"a\ud83d", "a\u{fffd}"),
+            (r"\ude00b", "\u{fffd}b"),
+            (r"\ud83d\ud83d\ude00\uDE00", "\u{fffd}😀\u{fffd}"),
+            (r"\ud83d\n\\ude00\ud83d", "\u{fffd}\n\\ude00\u{fffd}"),
+        ] {
+            let body = format!(r#"{{"method":"{text}"}}"#);
+            let Ok(Message::Notification(read)) = read(body.as_bytes()) else { panic!("{text}") };
+            assert_eq!(read.method, read_as);
+        }
+        assert_eq!(code(r#"{"method":"\ud83d"#).0, ErrorCode::ParseError as i32);
+        assert_eq!(code(r#"{"method":"\ud8"}"#).0, ErrorCode::ParseError as i32);
     }
 
     #[test]

@@ -79,11 +79,20 @@ fn make() -> io::Result<(Folder, PathBuf)> {
 fn remove_left(around: &Path) {
     let named = |entry: &std::fs::DirEntry| entry.file_name().to_string_lossy().starts_with(PREFIX);
     let folders = std::fs::read_dir(around).into_iter().flatten().flatten().filter(named);
-    for folder in folders.map(|entry| entry.path()) {
-        // What somebody else has there cannot be removed, nor what a link leads to.
+    for folder in folders.map(|entry| entry.path()).filter(|folder| is_ours(folder)) {
         let lock = File::open(folder.join(LOCK));
         if lock.is_ok_and(|lock| lock.try_lock().is_ok()) {
             let _ = std::fs::remove_dir_all(&folder);
         }
     }
+}
+
+/// Whether this is a folder of this user's, and no link to one: in others whatever is opened may be made to be waited for.
+fn is_ours(folder: &Path) -> bool {
+    let Ok(found) = std::fs::symlink_metadata(folder) else { return false };
+    #[cfg(unix)]
+    if std::os::unix::fs::MetadataExt::uid(&found) != rustix::process::geteuid().as_raw() {
+        return false;
+    }
+    found.is_dir()
 }

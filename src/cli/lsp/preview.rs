@@ -1,6 +1,7 @@
 //! The preview of a document, saved or not, served from this process: it follows what stands in the editor, a click on a
 //! place of the page leads there, and the pixels are lit that show what stands at the cursor.
 
+use super::analyst::Meaning;
 use super::buffer::{Asked as AskedToChange, Buffer};
 use super::commands::{About, Order};
 use super::documents::{Kept, Key, place};
@@ -88,6 +89,9 @@ impl Previews {
         if let Some(live) = self.served.get(&served) {
             return Ok(live.url.clone());
         }
+        if view.documents.get(key).is_none() && !path.is_file() {
+            return Err(Failure::plain(format!("there is no file `{}`", path.display())));
+        }
         if self.served.len() >= MOST {
             return Err(Failure::plain(format!("{MOST} previews are served already")));
         }
@@ -142,10 +146,13 @@ impl Previews {
 /// Refuses a camera that a document does not have, and does nothing else.
 fn has_camera(asked: &mut Asked, params: Value) -> Answer<Value> {
     let About { uri, camera } = read(params)?;
-    // Of a text with errors it is not known, and one that is not open is looked at as it is shown.
-    let (Some(camera), Some(Ok(meaning))) = (camera, asked.meaning_of(&Key::of(&uri))) else {
-        return Ok(Value::Null);
+    let key = Key::of(&uri);
+    let meaning = match asked.meaning_of(&key) {
+        Some(meaning) => meaning.ok(),
+        None => Meaning::find(asked.view, &key, &|| asked.is_cancelled()).map(Arc::new),
     };
+    // Of a text with errors it is not known.
+    let (Some(camera), Some(meaning)) = (camera, meaning) else { return Ok(Value::Null) };
     let Some(cameras) = meaning.analysis.cameras().filter(|cameras| !cameras.contains(&camera)) else {
         return Ok(Value::Null);
     };

@@ -312,7 +312,7 @@ impl Server {
             }
             Method::TextDocumentDidChange => {
                 let changed: Changed = read(params)?;
-                let key = Key::of(&changed.text_document.text_document_identifier.uri);
+                let key = Key::of(&changed.text_document.uri);
                 let view = Arc::make_mut(&mut self.view);
                 let encoding = view.session.encoding;
                 view.documents.change(&key, changed, encoding);

@@ -133,11 +133,16 @@ fn what_a_server_left_that_was_killed_is_removed() {
     // What is of somebody else stays.
     std::fs::create_dir(place.join("rtc-codes-strange")).unwrap();
     std::fs::write(place.join("rtc-codes-file"), "").unwrap();
+    let elsewhere = desk.path("elsewhere");
+    std::fs::create_dir(&elsewhere).unwrap();
+    std::fs::write(elsewhere.join("lock"), "").unwrap();
+    std::os::unix::fs::symlink(&elsewhere, place.join("rtc-codes-link")).unwrap();
     let second = serve();
     assert!(!left[0].exists());
-    assert_eq!(folders().len(), 3);
+    assert_eq!(folders().len(), 4);
     assert_eq!(second.end(), Some(0));
-    assert_eq!(folders().len(), 2);
+    assert_eq!(folders().len(), 3);
+    assert!(elsewhere.join("lock").exists());
 }
 
 #[test]
@@ -212,6 +217,61 @@ fn much() -> String {
 }
 
 #[test]
+fn an_id_that_was_given_up_may_be_that_of_another_request() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    let uri = client.uri("a.rt");
+    for round in 0..20 {
+        // The one is at work on while it is cancelled, and the other waits behind it.
+        client.tell(
+            "textDocument/didOpen",
+            json!({ "textDocument": { "uri": uri, "languageId": "rt", "version": round, "text": much() } }),
+        );
+        let position = json!({ "line": 0, "character": 1 });
+        let hover = json!({ "textDocument": { "uri": uri }, "position": position });
+        client.send(&json!({ "id": "same", "method": "textDocument/hover", "params": hover }));
+        client.tell("$/cancelRequest", json!({ "id": "same" }));
+        client.send(&json!({ "id": "same", "method": "textDocument/codeLens", "params": hover }));
+        let _ = client.answer(&json!("same"));
+        let lenses = client.answer(&json!("same")).unwrap();
+        assert!(lenses.is_array(), "{lenses}");
+    }
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
+fn documents_may_have_odd_names_and_odd_letters() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    let folder = client.uri("");
+    let names = ["vscode-remote://ssh/a.rt", "git:/a.rt?b", "x", "file:///%00.rt", "file://elsewhere/a.rt"];
+    let names = names.map(String::from).into_iter().chain([folder.clone(), format!("{folder}%ff.rt")]);
+    for uri in names {
+        let item = json!({ "uri": uri, "languageId": "rt", "version": 1, "text": BAD });
+        client.tell("textDocument/didOpen", json!({ "textDocument": item }));
+        let said = client.wait("diagnostics", |message| message["params"]["uri"] == *uri);
+        assert_eq!(said["params"]["diagnostics"][0]["code"], "E0203", "{uri}");
+    }
+    // Half a character is one of the same width, and what is behind it keeps its place.
+    client.open("a.rt", "sphere { radius: 1m }\n");
+    let uri = client.uri("a.rt");
+    let text = r"/*\ud83d*/ sphere { radius: 8deg }\n";
+    let body = format!(
+        r#"{{"method":"textDocument/didChange","params":{{"textDocument":{{"uri":"{uri}","version":2}},"contentChanges":[{{"text":"{text}"}}]}}}}"#
+    );
+    client.send_bytes(format!("Content-Length: {}\r\n\r\n{body}", body.len()).as_bytes());
+    let said = client.diagnostics("a.rt", Some(2));
+    assert_eq!(said[0]["range"]["start"], json!({ "line": 0, "character": 23 }));
+    // An edit that says of no version what it is of is an edit.
+    let at = json!({ "line": 0, "character": 23 });
+    let changes = json!([{ "range": { "start": at, "end": at }, "text": "1m //" }]);
+    let document = json!({ "uri": uri });
+    client.tell("textDocument/didChange", json!({ "textDocument": document, "contentChanges": changes }));
+    assert_eq!(client.codes("a.rt", Some(2)), ["E0002"]);
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
 fn a_request_that_is_cancelled_is_answered_once() {
     let desk = Desk::new();
     let mut client = Client::new(&desk);
@@ -266,6 +326,29 @@ fn a_long_document_is_edited_within_bounds() {
     assert!(!codes.is_empty());
     #[cfg(target_os = "linux")]
     assert!(client.memory() < 2500 << 20, "{} MB", client.memory() >> 20);
+    assert_eq!(client.end(), Some(0));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn thousands_of_edits_take_no_more_memory_than_hundreds() {
+    let desk = Desk::new();
+    let mut client = Client::new(&desk);
+    client.open("a.rt", &much());
+    let edit = |client: &mut Client, versions: std::ops::Range<i32>| {
+        let last = versions.end - 1;
+        for version in versions {
+            let (end, text) = if version % 2 == 0 { (0, "x") } else { (1, "") };
+            let at = |character: u32| json!({ "line": version / 2 % 3000, "character": character });
+            let change = json!([{ "range": { "start": at(0), "end": at(end) }, "text": text }]);
+            client.change("a.rt", version, change);
+        }
+        assert_eq!(client.codes("a.rt", Some(last)), Vec::<String>::new());
+        client.memory()
+    };
+    let before = edit(&mut client, 2..502);
+    let after = edit(&mut client, 502..20_502);
+    assert!(after < before + (32 << 20), "{} MB, then {} MB", before >> 20, after >> 20);
     assert_eq!(client.end(), Some(0));
 }
 

@@ -100,7 +100,7 @@ fn an_editor_that_refuses_is_heard() {
         (3, json!({ "result": null }), "it: it does not say why"),
         (4, json!({ "error": error }), "it: no"),
         // It says so, and does something else.
-        (5, json!({ "result": { "applied": true } }), "its text is another: try it again"),
+        (5, json!({ "result": { "applied": true } }), "the text says something else: try it again"),
     ] {
         write(&mut page, id);
         let mut reply = reply;
@@ -137,11 +137,18 @@ fn an_editor_that_takes_no_edits_keeps_its_text() {
 #[test]
 fn what_is_closed_is_shown_and_written_as_it_is_saved() {
     let desk = Desk::new();
-    desk.put("scene.rt", &format!("{SCENE}camera wide {{ from: (0, 1, 6)m, look: (0, 0, 0)m }}\n"));
+    desk.put("scene.rt", format!("{SCENE}camera wide {{ from: (0, 1, 6)m, look: (0, 0, 0)m }}\n"));
     let mut client = client(&desk, true);
-    let arguments = json!([{ "uri": client.uri("scene.rt"), "camera": "wide" }]);
-    let params = json!({ "command": "rtc.startPreview", "arguments": arguments });
-    let url = client.ask("workspace/executeCommand", params).unwrap()["url"].as_str().unwrap().to_string();
+    let begin = |client: &mut Client, name: &str, camera: &str| {
+        let arguments = json!([{ "uri": client.uri(name), "camera": camera }]);
+        let params = json!({ "command": "rtc.startPreview", "arguments": arguments });
+        client.ask("workspace/executeCommand", params)
+    };
+    let none = begin(&mut client, "scene.rt", "tall").unwrap_err();
+    assert_eq!(none["message"], "no camera is called `tall`: there is `wide`");
+    let none = begin(&mut client, "nothing.rt", "wide").unwrap_err();
+    assert!(none["message"].as_str().unwrap().starts_with("there is no file"), "{none}");
+    let url = begin(&mut client, "scene.rt", "wide").unwrap()["url"].as_str().unwrap().to_string();
     let mut page = set(&url, "2m");
     write(&mut page, 1);
     assert_eq!(told(&mut page, 1)["ok"], true);

@@ -258,6 +258,45 @@ step('the live preview serves the text, saved or not', function()
   check(pages[2]:find('^http://127%.0%.0%.1:%d+/%w+/$'), pages[2])
 end)
 
+step('what is written on the page goes into the text, saved or not', function()
+  open('written.rt', SCENE .. 'render { size: (64, 48), samples: 4 }\n')
+  wait('the server is there', client)
+  replace('power: 60W', 'power: 80W')
+  -- What follows is undone by itself.
+  vim.bo.undolevels = vim.bo.undolevels
+  local page
+  vim.ui.open = function(opened)
+    page = opened
+    return { wait = function() return { code = 0 } end }
+  end
+  vim.cmd.RtcPreview()
+  wait('the page opens', function()
+    return page
+  end)
+  local function write(value)
+    local script = root .. '/xtask/e2e/editors/write.mjs'
+    local done
+    vim.system({ 'node', script, vim.env.RTC, vim.env.PLAYWRIGHT, page, 'size', value }, { text = true }, function(ended)
+      done = ended
+    end)
+    -- A browser starts, which takes its time.
+    check(vim.wait(120000, function() return done end, 20), 'waited in vain until the page has written')
+    return done.code == 0, done.stdout .. done.stderr
+  end
+  local written, said = write('75cm')
+  check(written, said)
+  check(text():find('size: length = 75cm in', 1, true) and text():find('80W', 1, true), text())
+  local file = table.concat(vim.fn.readfile('written.rt'), '\n')
+  check(vim.bo.modified and file:find('= 50cm', 1, true) and file:find('60W', 1, true), 'the file is as it was: ' .. file)
+  vim.cmd('silent undo')
+  check(text():find('size: length = 50cm in', 1, true) and text():find('80W', 1, true), 'it is undone: ' .. text())
+  vim.bo.modifiable = false
+  written, said = write('30cm')
+  check(not written and said:find('the editor does not take it', 1, true), said)
+  vim.bo.modifiable = true
+  vim.cmd('bwipeout!')
+end)
+
 step(':make fills the list of errors', function()
   open('wrong.rt', 'sphere { radius: 8deg }\n')
   vim.cmd('silent make!')

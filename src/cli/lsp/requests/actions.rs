@@ -11,6 +11,9 @@ use rt_lang::ide::Fix;
 use rt_lang::mend::mend;
 use std::collections::BTreeMap;
 
+/// The most that is offered at once: nobody reads more, and there may be as many as characters.
+const MOST: usize = 500;
+
 /// What can be done about a part of a document.
 pub fn actions(
     asked: &mut Asked,
@@ -22,7 +25,7 @@ pub fn actions(
     let mut found = vec![];
     if wanted(only, &Kind::QuickFix) {
         let fixes = meaning.analysis.fixes(meaning.bytes(params.range));
-        found.extend(fixes.into_iter().map(|fix| action(fix, &meaning, asked)));
+        found.extend(fixes.into_iter().take(MOST).map(|fix| action(fix, &meaning, asked)));
     }
     if wanted(only, &Kind::SourceFixAll) {
         found.extend(fix_all(&key, &meaning, asked));

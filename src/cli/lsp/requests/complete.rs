@@ -2,7 +2,7 @@
 
 use super::super::analyst::range;
 use super::super::client::Client;
-use super::super::documents::{Key, place};
+use super::super::documents::{Kept, Key, place};
 use super::super::work::{Answer, Asked};
 use super::super::world::World;
 use crate::cli::lsp::work::Failure;
@@ -13,6 +13,10 @@ use rt_lang::ide::{self, Completion, CompletionKind, Insert};
 pub fn complete(asked: &mut Asked, params: lsp::CompletionParams) -> Answer<Option<lsp::CompletionResponse>> {
     let lsp::TextDocumentPositionParams { text_document, position } = params.text_document_position_params;
     let document = asked.document(&text_document.uri)?;
+    if document.kept != Kept::Whole {
+        // There is no place to put anything.
+        return Ok(None);
+    }
     let session = &asked.view.session;
     let at = document.text.byte(place(position), session.encoding);
     let world = World::around(asked.view, &Key::of(&text_document.uri));

@@ -1,7 +1,7 @@
 //! Names: where they are declared, who uses them, and giving them others.
 
 use super::super::analyst::{Meaning, uri};
-use super::super::documents::Key;
+use super::super::documents::{Kept, Key};
 use super::super::edits;
 use super::super::work::{Answer, Asked, Failure};
 use super::workspace::users;
@@ -85,6 +85,11 @@ pub fn rename(asked: &mut Asked, params: lsp::RenameParams) -> Answer<Option<lsp
     let users = users(asked, &meaning, at)?;
     if !users.complete {
         return Err(Failure::plain("the workspace has too many files to find all uses"));
+    }
+    if asked.view.documents.iter().any(|(_, document)| document.kept != Kept::Whole) {
+        return Err(Failure::plain(
+            "a document is open whose text is not known, with uses that nobody finds",
+        ));
     }
     let edits = ide::rename(&users.analyses(), &users.own.analysis, at, &params.new_name);
     let edits = edits.map_err(Failure::plain)?;

@@ -256,7 +256,7 @@ listen({
 
 async function writeBack(name) {
   const answer = await link.ask({ type: "write", name }).catch((error) => ({ error: error.message }));
-  toast(answer.ok ? `\`${name}\` is written to the file` : answer.error);
+  toast(answer.ok ? `\`${name}\` is written` : answer.error);
 }
 
 let fading;

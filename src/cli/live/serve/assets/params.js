@@ -72,7 +72,7 @@ class Row {
     this.control = control(param, (value) => this.drag(value));
     if (this.control) this.control.node.setAttribute("aria-label", param.name);
     this.back = element("button", { type: "button", class: "quiet", title: "As the file says", onclick: () => on.set(param.name, "") }, "Reset");
-    this.write = element("button", { type: "button", class: "quiet", title: "Writes this value into the file, as the param's default", onclick: () => on.write(param.name) }, "Write");
+    this.write = element("button", { type: "button", class: "quiet", title: "Writes this value into the text, as the param's default", onclick: () => on.write(param.name) }, "Write");
     this.actions = element("span", { class: "actions" }, this.back, this.write);
     // One that the file has not any more can be dropped, and nothing else.
     const gone = param.default === "";
