@@ -209,7 +209,7 @@ fn start(
 /// Tells when files may have changed.
 fn follow_files(arguments: &Watch, hub: &Arc<Hub>) -> Result<Watcher, Problem> {
     let told = hub.clone();
-    Watcher::new(arguments.poll.map(Duration::from_millis), move || told.ask(Request::Look))
+    Watcher::new(arguments.poll.map(Duration::from_millis), move |_| told.ask(Request::Look))
 }
 
 /// Lets a thread work only where no other wants to: editors, browsers and compilers are not to wait for a picture.

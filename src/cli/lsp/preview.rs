@@ -190,11 +190,11 @@ fn load(newest: &Newest, key: &Key, reading: &Reading, overrides: &Overrides) ->
             "what stands in the editor is not known: close the scene there and open it again",
         ));
     }
-    let disk = Disk::below(root)?;
+    let mut disk = Disk::below(root)?;
     let place = disk.path_of(path)?;
     for (key, document) in view.documents.iter().filter(|(_, document)| document.kept == Kept::Whole) {
-        if let Some(place) = key.path().and_then(|path| disk.path_of(path).ok()) {
-            disk.hold(place, document.text.whole().as_bytes());
+        if let Some(path) = key.path() {
+            disk.hold(path, document.text.whole().as_bytes());
         }
     }
     let source = Source::new(path.display().to_string(), document.text.whole().to_string());
