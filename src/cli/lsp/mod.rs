@@ -50,6 +50,8 @@ use super::args::Lsp;
 use super::interrupt::Interrupt;
 use super::{Exit, Problem, plain};
 use server::Server;
+#[cfg(fuzzing)]
+pub use server::script;
 
 /// Serves until the client says so or is gone.
 pub fn run(arguments: &Lsp, interrupt: &Interrupt) -> Result<Exit, Problem> {

@@ -478,5 +478,7 @@ impl Server {
     }
 }
 
+#[cfg(any(test, fuzzing))]
+pub mod script;
 #[cfg(test)]
 mod tests;

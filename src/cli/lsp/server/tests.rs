@@ -141,3 +141,12 @@ fn what_was_told_is_taken_back_where_it_was_told() {
         assert_eq!(published, [(json!(uri), true), (json!(uri), false)]);
     }
 }
+
+proptest::proptest! {
+    #![proptest_config(proptest::prelude::ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn sessions_come_out_right(script in proptest::collection::vec(proptest::prelude::any::<u8>(), 0..120)) {
+        script::run(&script);
+    }
+}
