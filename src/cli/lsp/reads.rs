@@ -21,11 +21,10 @@ pub struct Reads {
 }
 
 impl Reads {
-    /// The open documents that are made of what has these paths, or lies below one, but are not themselves there.
+    /// The open documents that are made of what has these paths, or lies below one.
     pub fn users(&self, paths: &BTreeSet<PathBuf>) -> Vec<Key> {
         let changed = |read: &Key| ways(read).any(|path| paths.contains(path));
-        let is_other = |user: &Key| user.path().is_none_or(|path| !paths.contains(path));
-        let uses = |(user, reads): &(&Key, &BTreeSet<Key>)| is_other(user) && reads.iter().any(changed);
+        let uses = |(_, reads): &(&Key, &BTreeSet<Key>)| reads.iter().any(changed);
         self.by_document.iter().filter(uses).map(|(user, _)| user.clone()).collect()
     }
 
@@ -93,9 +92,7 @@ mod tests {
         for changed in ["/b/b", "/b", "/"] {
             assert_eq!(reads.users(&paths([changed])), [key("/a")]);
         }
-        for other in [paths(["/a", "/b/b"]), paths(["/b/b/b", "/b/c", "/b/b~"])] {
-            assert_eq!(reads.users(&other), []);
-        }
+        assert_eq!(reads.users(&paths(["/b/b/b", "/b/c", "/b/b~"])), []);
         // It changed while it was looked at.
         reads.note(&paths(["/b"]), 3);
         assert!(reads.take(&key("/a"), [key("/b/b")].into(), 2));

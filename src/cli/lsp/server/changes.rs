@@ -82,7 +82,8 @@ impl Server {
     /// Saved files, or folders with all that is in them, have changed: only those mean something else that read them there.
     pub(super) fn saved_at(&mut self, paths: impl IntoIterator<Item = PathBuf>) {
         let open = |path: &PathBuf| self.view.documents.get(&Key::File(path.clone())).is_some();
-        let paths = paths.into_iter().filter(|path| !open(path)).collect();
+        let reached = paths.into_iter().filter(|path| !open(path)).flat_map(|path| names(&path));
+        let paths = reached.filter(|path| !open(path)).collect();
         self.reads.note(&paths, self.view.documents.stamp() + 1);
         self.touch(self.reads.users(&paths));
     }

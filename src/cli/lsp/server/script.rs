@@ -185,6 +185,9 @@ pub fn run(script: &[u8]) {
     fs::create_dir(here.join("lib")).expect("a folder");
     #[cfg(unix)]
     std::os::unix::fs::symlink("lib", here.join("room")).expect("a link");
+    for file in ["b.rt", "lib/c.rt"] {
+        fs::write(here.join(file), TEXTS[1]).expect("it can be written");
+    }
     let mut client = Client::new(&here);
     let mut texts: BTreeMap<usize, String> = BTreeMap::new();
     for step in script.chunks_exact(3) {

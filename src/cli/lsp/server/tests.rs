@@ -143,10 +143,10 @@ fn what_was_told_is_taken_back_where_it_was_told() {
 }
 
 proptest::proptest! {
-    #![proptest_config(proptest::prelude::ProptestConfig::with_cases(32))]
+    #![proptest_config(proptest::prelude::ProptestConfig::with_cases(200))]
 
     #[test]
-    fn sessions_come_out_right(script in proptest::collection::vec(proptest::prelude::any::<u8>(), 0..120)) {
+    fn sessions_come_out_right(script in proptest::collection::vec(proptest::prelude::any::<u8>(), 0..90)) {
         script::run(&script);
     }
 }
