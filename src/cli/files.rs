@@ -22,6 +22,8 @@ pub struct Disk {
     shown: PathBuf,
     /// Without links.
     root: PathBuf,
+    /// What files hold, whatever is saved; by where they are without links.
+    held: BTreeMap<PathBuf, Arc<[u8]>>,
     asked: Mutex<BTreeMap<FilePath, Answer>>,
 }
 
@@ -53,7 +55,7 @@ impl Disk {
         if !root.is_dir() {
             return Err(cannot("is no folder"));
         }
-        Ok(Disk { shown: shown.into(), root, asked: Mutex::default() })
+        Ok(Disk { shown: shown.into(), root, held: BTreeMap::new(), asked: Mutex::default() })
     }
 
     /// Where a scene on the disk stands below the root.
@@ -80,9 +82,10 @@ impl Disk {
         }
     }
 
-    /// Takes a file as read: it holds these bytes, whatever is saved.
-    pub fn hold(&self, path: FilePath, bytes: &[u8]) {
-        self.lock().insert(path, Ok(bytes.into()));
+    /// Has a file hold these bytes, whatever is saved, by each path that leads to it.
+    pub fn hold(&mut self, file: &Path, bytes: &[u8]) {
+        let real = real_path(file).filter(|real| real.starts_with(&self.root));
+        self.held.extend(real.map(|real| (real, bytes.into())));
     }
 
     /// Every file that was asked for, by path.
@@ -116,7 +119,13 @@ impl Disk {
     }
 
     fn read_now(&self, path: &FilePath, most: usize) -> Answer {
-        let real = fs::canonicalize(self.root.join(path.as_str())).map_err(|error| refusal(&error))?;
+        let path = self.root.join(path.as_str());
+        match real_path(&path).and_then(|real| self.held.get(&real)) {
+            Some(bytes) if bytes.len() > most => return Err(FileError::TooLarge(most)),
+            Some(bytes) => return Ok(bytes.clone()),
+            None => {}
+        }
+        let real = fs::canonicalize(path).map_err(|error| refusal(&error))?;
         if !real.starts_with(&self.root) {
             return Err(FileError::Outside);
         }
@@ -161,6 +170,12 @@ impl Files for Disk {
     fn name(&self, path: &FilePath) -> String {
         self.named(path).display().to_string()
     }
+}
+
+/// Where a file is, without links; where there is none yet, where it would be.
+pub fn real_path(file: &Path) -> Option<PathBuf> {
+    let beside = || Some(file.parent()?.canonicalize().ok()?.join(file.file_name()?));
+    file.canonicalize().ok().or_else(beside)
 }
 
 /// Whether two names that a user may write are of the same file.
@@ -266,6 +281,26 @@ mod tests {
         assert!(matches!(disk.read(&path("loop.rt"), 9), Err(FileError::Unreadable(_))));
         let dev = Disk::below(Path::new("/dev")).unwrap();
         assert_eq!(dev.read(&path("zero"), 9), Err(FileError::Unreadable("is no plain file".into())));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_is_held_is_read_by_each_path_that_leads_there() {
+        use std::os::unix::fs::symlink;
+        let (folder, mut disk) = disk();
+        let inside = folder.path().join("inside");
+        symlink("rooms", inside.join("linked")).unwrap();
+        symlink("rooms/hall.rt", inside.join("in.rt")).unwrap();
+        symlink("../secret", inside.join("out.rt")).unwrap();
+        disk.hold(&inside.join("linked/hall.rt"), b"open");
+        disk.hold(&inside.join("linked/new.rt"), b"new");
+        disk.hold(&folder.path().join("secret"), b"open");
+        for name in ["rooms/hall.rt", "linked/hall.rt", "in.rt"] {
+            assert_eq!(disk.read(&path(name), 9).as_deref(), Ok(&b"open"[..]), "{name}");
+        }
+        assert_eq!(disk.read(&path("rooms/new.rt"), 9).as_deref(), Ok(&b"new"[..]));
+        assert_eq!(disk.read(&path("rooms/new.rt"), 2), Err(FileError::TooLarge(2)));
+        assert_eq!(disk.read(&path("out.rt"), 9), Err(FileError::Outside));
     }
 
     #[cfg(unix)]

@@ -52,6 +52,8 @@ mod why;
 use args::{Arguments, Command};
 use clap::Parser;
 use interrupt::Interrupt;
+#[cfg(fuzzing)]
+pub use lsp::script as session;
 use std::process::ExitCode;
 use terminal::Terminal;
 

@@ -2,6 +2,7 @@
 
 mod answers;
 mod client;
+mod disk;
 mod edits;
 mod page;
 mod preview;

@@ -23,6 +23,7 @@
 //! | [`editor`] | how a place in a file is opened |
 
 mod answers;
+mod bomb;
 mod desk;
 mod editor;
 mod engine;
@@ -45,6 +46,7 @@ use super::interrupt::Interrupt;
 use super::target::{Target, print};
 use super::terminal::Terminal;
 use super::{Exit, Problem, build, plain};
+use bomb::{Bomb, Broken};
 use desk::Desk;
 pub use editor::Opened;
 use editor::{Editor, Tell};
@@ -55,6 +57,7 @@ use rayon::ThreadPoolBuilder;
 use reader::{Load, Reader};
 use serve::Wanted;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
 use store::{Saved, Store};
@@ -70,7 +73,8 @@ pub fn run(arguments: &Watch, terminal: Terminal, interrupt: &Interrupt) -> Resu
             if targets.is_empty() { String::new() } else { format!(", writing {}", build::names(&targets)) };
         terminal.line(&format!("watching {}{written}", arguments.scene.display()));
     }
-    let Started { hub, requests, desk } = start(arguments, targets, terminal, interrupt)?;
+    let Started { hub, requests, desk, .. } =
+        start(arguments, targets, terminal, interrupt, |_, _| bomb::exit())?;
     if let Some(address) = arguments.serve {
         let editor = Editor::new(arguments.editor_url.clone(), arguments.open_with)?;
         show(hub.clone(), Wanted { address, editor }, arguments.open)?;
@@ -87,6 +91,7 @@ pub struct Live {
     pub url: String,
     hub: Arc<Hub>,
     desk: Arc<Desk>,
+    broken: Arc<AtomicBool>,
 }
 
 impl Drop for Live {
@@ -97,6 +102,11 @@ impl Drop for Live {
 }
 
 impl Live {
+    /// Whether it is served no more, since something in it is a bug.
+    pub fn is_broken(&self) -> bool {
+        self.broken.load(Ordering::Relaxed)
+    }
+
     /// What is shown may be out of date.
     pub fn look(&self) {
         self.hub.ask(Request::Look);
@@ -108,24 +118,41 @@ impl Live {
     }
 }
 
-/// Serves a scene that is read by `load` and changed in `store`, and tells of places that are clicked on.
+/// Serves a scene that is read by `load` and changed in `store`, and tells of places that are clicked on. `broken` hears of its
+/// end where a thread of it panics.
 pub fn preview(
     arguments: &Watch,
     load: Load,
     store: Box<dyn Store>,
     tell: Tell,
+    broken: Box<dyn Fn() + Send + Sync>,
     terminal: Terminal,
     interrupt: &Interrupt,
 ) -> Result<Live, Problem> {
     let address = arguments.serve.ok_or_else(|| Problem::new("there is nothing to serve"))?;
-    let Started { hub, requests, desk } = start(arguments, vec![], terminal, interrupt)?;
-    let mut live = Live { url: String::new(), hub: hub.clone(), desk: desk.clone() };
+    let is_broken = Arc::new(AtomicBool::new(false));
+    let ends = is_broken.clone();
+    let end = move |hub: &Arc<Hub>, desk: &Arc<Desk>| -> Broken {
+        let (hub, desk) = (hub.clone(), desk.clone());
+        Arc::new(move || {
+            if !ends.swap(true, Ordering::Relaxed) {
+                hub.end();
+                desk.close();
+                broken();
+            }
+        })
+    };
+    let Started { hub, requests, desk, broken } = start(arguments, vec![], terminal, interrupt, end)?;
+    let mut live = Live { url: String::new(), hub: hub.clone(), desk: desk.clone(), broken: is_broken };
     live.url = serve::start(hub.clone(), Wanted { address, editor: Editor::told(tell) })?;
     let watcher = follow_files(arguments, &hub)?;
     let reader =
         Reader::new(&arguments.scene, &arguments.reading, arguments.taking.overrides(), vec![]).by(load);
     let engine = Engine::new(arguments, reader, watcher, desk, hub, store, terminal);
-    let follow = move || engine.run(&requests);
+    let follow = move || {
+        let _bomb = Bomb(broken);
+        engine.run(&requests)
+    };
     let started = std::thread::Builder::new().name("follow".into()).spawn(follow);
     started.map_err(|error| Problem::new(format!("cannot start a thread: {error}")))?;
     Ok(live)
@@ -136,6 +163,7 @@ struct Started {
     hub: Arc<Hub>,
     requests: Receiver<Request>,
     desk: Arc<Desk>,
+    broken: Broken,
 }
 
 /// Starts what paints and what writes.
@@ -144,6 +172,7 @@ fn start(
     targets: Vec<Target>,
     terminal: Terminal,
     interrupt: &Interrupt,
+    broken: impl FnOnce(&Arc<Hub>, &Arc<Desk>) -> Broken,
 ) -> Result<Started, Problem> {
     let threads = || ThreadPoolBuilder::new().num_threads(arguments.taking.threads.unwrap_or(0));
     let problem = |error| Problem::new(format!("cannot start the threads: {error}"));
@@ -151,6 +180,7 @@ fn start(
     let threads = threads().start_handler(|_| step_back()).build().map_err(problem)?;
     let (hub, requests) = Hub::new();
     let desk = Arc::new(Desk::default());
+    let broken = broken(&hub, &desk);
     let names = match targets.as_slice() {
         [] => String::new(),
         targets => format!("{}: ", build::names(targets)),
@@ -169,16 +199,17 @@ fn start(
         terminal,
         quiet: arguments.quiet,
         names,
+        broken: broken.clone(),
     };
     let started = std::thread::Builder::new().name("paint".into()).spawn(move || painter.run());
     started.map_err(|error| Problem::new(format!("cannot start a thread: {error}")))?;
-    Ok(Started { hub, requests, desk })
+    Ok(Started { hub, requests, desk, broken })
 }
 
 /// Tells when files may have changed.
 fn follow_files(arguments: &Watch, hub: &Arc<Hub>) -> Result<Watcher, Problem> {
     let told = hub.clone();
-    Watcher::new(arguments.poll.map(Duration::from_millis), move || told.ask(Request::Look))
+    Watcher::new(arguments.poll.map(Duration::from_millis), move |_| told.ask(Request::Look))
 }
 
 /// Lets a thread work only where no other wants to: editors, browsers and compilers are not to wait for a picture.
@@ -229,4 +260,53 @@ fn outputs(arguments: &Watch) -> Result<Vec<Target>, Problem> {
     refuse_idle_depth(arguments.taking.look.bits, &targets)?;
     targets.iter().try_for_each(Target::refuse_no_place)?;
     Ok(targets)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::desk::Job;
+    use super::*;
+    use crate::cli::args::{Arguments, Command};
+    use crate::cli::files::Disk;
+    use crate::cli::input::Input;
+    use crate::cli::scene;
+    use clap::Parser;
+    use rt_lang::files::FilePath;
+    use rt_lang::lower::Overrides;
+    use rt_lang::source::Source;
+    use std::sync::mpsc::channel;
+
+    const PATIENCE: Duration = Duration::from_secs(60);
+
+    #[test]
+    fn a_panic_ends_the_preview_and_not_the_process() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.rt");
+        std::fs::write(&path, "").unwrap();
+        let words = ["rtc", "watch", "--serve", "--quiet", path.to_str().unwrap()];
+        let Command::Watch(watch) = Arguments::try_parse_from(words).unwrap().command else { panic!() };
+        let loaded = |text: &str| {
+            let (disk, source) = (Disk::below(folder.path()).unwrap(), Source::new("a.rt", text));
+            let place = FilePath::root("a.rt");
+            scene::take_from(disk, place, Input::of(source), &watch.reading, &Overrides::default())
+        };
+        let start = |load: Load| {
+            let (tell, told) = channel();
+            let interrupt = Interrupt::default();
+            let store = Box::new(Saved::at(&path, &interrupt));
+            let broken = Box::new(move || tell.send(()).unwrap());
+            let live =
+                preview(&watch, load, store, Box::new(drop), broken, Terminal::silent(), &interrupt).unwrap();
+            (live, told)
+        };
+        let panics = start(Box::new(|_, _| panic!("while it reads")));
+        let (sound, told) = start(Box::new(|_, _| Err(Problem::new("nothing to paint"))));
+        assert!(!sound.is_broken());
+        // Of a scene with errors no job is ever made.
+        sound.desk.put(Arc::new(Job { generation: 1, loaded: loaded("sphere {") }), vec![]);
+        for (live, told) in [panics, (sound, told)] {
+            told.recv_timeout(PATIENCE).expect("nobody is told");
+            assert!(live.is_broken() && live.desk.take().is_none());
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! Traces the newest scene, progressively, and keeps what stays good.
 
 use super::answers::answer_all;
+use super::bomb::{Bomb, Broken};
 use super::desk::{Desk, Effort, Job};
 use super::hub::{Aim, Frame, Hub, Shown, State};
 use super::mix::Mix;
@@ -49,17 +50,8 @@ pub struct Painter {
     pub quiet: bool,
     /// The outputs, as they are named when one is done.
     pub names: String,
-}
-
-/// Ends the process when a thread that nobody waits for panics. That was reported, and nothing would be painted any more.
-struct Bomb;
-
-impl Drop for Bomb {
-    fn drop(&mut self) {
-        if std::thread::panicking() {
-            std::process::exit(101);
-        }
-    }
+    /// What is done where it panics.
+    pub broken: Broken,
 }
 
 /// What is left of a job when the next one comes.
@@ -107,7 +99,7 @@ struct Canvas {
 impl Painter {
     /// Paints as long as there may be work.
     pub fn run(&self) {
-        let _bomb = Bomb;
+        let _bomb = Bomb(self.broken.clone());
         let mut left = Left::default();
         while let Some((job, names)) = self.desk.take() {
             left = Painting::new(self, &job, &names, left).run();
@@ -139,7 +131,7 @@ impl<'a> Painting<'a> {
     }
 
     fn run(mut self) -> Left {
-        let Painter { front, threads, desk, hub, .. } = self.painter;
+        let Painter { front, threads, desk, hub, broken, .. } = self.painter;
         let mut tracer = front.install(|| Tracer::at_once(self.scene, self.left.structure.take()));
         let canvas = self.left.canvas.take().and_then(|canvas| self.keep(canvas));
         let prepass = match &canvas {
@@ -155,7 +147,7 @@ impl<'a> Painting<'a> {
                 std::thread::scope(|scope| {
                     let (tracer, prepass, job) = (&tracer, canvas.prepass, self.job);
                     scope.spawn(move || {
-                        let _bomb = Bomb;
+                        let _bomb = Bomb(broken.clone());
                         front.install(|| answer_all(desk, hub, tracer, &prepass, job));
                     });
                     threads.install(|| self.paint(tracer, canvas, fresh));
@@ -251,8 +243,8 @@ impl<'a> Painting<'a> {
 
     /// Traces until a new job comes.
     fn paint(&mut self, tracer: &Tracer, mut canvas: Canvas, fresh: bool) {
-        let _bomb = Bomb;
         let painter = self.painter;
+        let _bomb = Bomb(painter.broken.clone());
         let desk = &painter.desk;
         let mut written = 0;
         let (mut shown, mut cost) = (Instant::now(), Duration::ZERO);

@@ -8,7 +8,7 @@ use notify::event::{AccessKind, AccessMode, EventKind};
 use notify::{RecommendedWatcher, RecursiveMode, Watcher as _};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::time::Duration;
 
 /// Links that lead to links, at most.
@@ -26,13 +26,14 @@ pub struct Watcher {
     tell: Tell,
 }
 
-type Tell = std::sync::Arc<dyn Fn() + Send + Sync>;
+/// Hears which paths may have changed: files, links, or folders with all that is in them. None where it is not known which.
+type Tell = std::sync::Arc<dyn Fn(&[PathBuf]) + Send + Sync>;
 
 impl Watcher {
     /// Calls `tell` whenever a watched file may have changed, or every so often where a period is given.
     pub fn new(
         period: Option<Duration>,
-        tell: impl Fn() + Send + Sync + 'static,
+        tell: impl Fn(&[PathBuf]) + Send + Sync + 'static,
     ) -> Result<Watcher, Problem> {
         let tell: Tell = std::sync::Arc::new(tell);
         let mut watcher = Watcher { system: None, folders: BTreeMap::new(), tell: tell.clone() };
@@ -40,8 +41,12 @@ impl Watcher {
             Some(period) => poll(period, &tell)?,
             None => {
                 let told = move |event: notify::Result<notify::Event>| {
-                    if event.is_ok_and(|event| is_change(event.kind)) {
-                        tell();
+                    match event {
+                        Ok(event) if is_change(event.kind) => tell(&event.paths),
+                        // Reading a file is no change of it.
+                        Ok(_) => {}
+                        // Some events may be lost.
+                        Err(_) => tell(&[]),
                     }
                 };
                 match notify::recommended_watcher(told) {
@@ -56,28 +61,30 @@ impl Watcher {
     /// Watches these files and no others.
     pub fn follow(&mut self, files: impl IntoIterator<Item = PathBuf>) {
         let Some(system) = &mut self.system else { return };
-        let mut wanted = BTreeSet::new();
+        let mut wanted: BTreeMap<PathBuf, Vec<PathBuf>> = BTreeMap::new();
         for file in files {
-            places(&file, &mut wanted, MOST_LINKS);
+            for folder in trace(&file).folders {
+                wanted.entry(folder).or_default().push(file.clone());
+            }
         }
         // A folder that was made anew is another one, though it has the name.
         let gone = |(folder, identity): (&PathBuf, &Option<[u64; 2]>)| {
-            (!wanted.contains(folder) || *identity != identity_of(folder)).then(|| folder.clone())
+            (!wanted.contains_key(folder) || *identity != identity_of(folder)).then(|| folder.clone())
         };
         for folder in self.folders.iter().filter_map(gone).collect::<Vec<_>>() {
             // It may be gone for the system too.
             let _ = system.unwatch(&folder);
             self.folders.remove(&folder);
         }
-        let (mut deaf, mut fresh) = (false, false);
-        for folder in wanted {
+        let (mut deaf, mut fresh) = (false, vec![]);
+        for (folder, files) in wanted {
             if self.folders.contains_key(&folder) {
                 continue;
             }
             let identity = identity_of(&folder);
             match system.watch(&folder, RecursiveMode::NonRecursive) {
                 Ok(()) => {
-                    fresh = true;
+                    fresh.extend(files);
                     self.folders.insert(folder, identity);
                 }
                 // One that has gone in the meantime changes what is above it, which is looked at next.
@@ -87,9 +94,9 @@ impl Watcher {
         if deaf && poll(PERIOD, &self.tell).is_ok() {
             // The system watches no more folders than it likes.
             self.system = None;
-        } else if fresh {
+        } else if !fresh.is_empty() {
             // What changed before it was watched was not told.
-            (self.tell)();
+            (self.tell)(&fresh);
         }
     }
 }
@@ -106,29 +113,69 @@ fn identity_of(folder: &Path) -> Option<[u64; 2]> {
     metadata.is_dir().then_some([0; 2])
 }
 
-/// Reading a file is no change of it.
+/// Whether something is another than before.
 fn is_change(kind: EventKind) -> bool {
     !matches!(kind, EventKind::Access(access) if access != AccessKind::Close(AccessMode::Write))
 }
 
-/// The folders in which a change may make a path lead to something else.
-fn places(path: &Path, found: &mut BTreeSet<PathBuf>, links: usize) {
-    let Ok(path) = std::path::absolute(path) else { return };
-    let folder = |path: &Path| path.parent().map(Path::to_path_buf);
-    // The nearest folder that is there; what comes to be in it is looked at again.
-    let there = path.ancestors().skip(1).find(|folder| folder.is_dir());
-    found.extend(there.map(Path::to_path_buf));
-    for part in path.ancestors() {
-        let Ok(target) = fs::read_link(part) else { continue };
-        let Some(around) = folder(part) else { continue };
-        if links > 0 {
-            let rest = path.strip_prefix(part).unwrap_or(Path::new(""));
-            let target = around.join(target);
-            let target = if rest.as_os_str().is_empty() { target } else { target.join(rest) };
-            places(&target, found, links - 1);
-        }
-        found.insert(around);
+/// How a file is reached.
+#[derive(Default)]
+struct Trace {
+    /// Its path, and those that links make of it on the way.
+    names: BTreeSet<PathBuf>,
+    /// The folders in which a change may make the path lead to something else.
+    folders: BTreeSet<PathBuf>,
+}
+
+/// The paths by which a file is reached: a change of one of them, or of a folder on its way, may be a change of the file.
+pub fn names(file: &Path) -> BTreeSet<PathBuf> {
+    trace(file).names
+}
+
+fn trace(path: &Path) -> Trace {
+    let mut found = Trace::default();
+    if let Ok(path) = std::path::absolute(path) {
+        found.follow(path, MOST_LINKS);
     }
+    found
+}
+
+impl Trace {
+    fn follow(&mut self, path: PathBuf, links: usize) {
+        // The nearest folder that is there; what comes to be in it is looked at again.
+        let there = path.ancestors().skip(1).find(|folder| folder.is_dir());
+        self.folders.extend(there.map(Path::to_path_buf));
+        for part in path.ancestors() {
+            let (Ok(target), Some(around)) = (fs::read_link(part), part.parent()) else { continue };
+            self.folders.insert(around.to_path_buf());
+            let mut target = joined(around, &target);
+            target.extend(path.strip_prefix(part));
+            if links > 0 && !self.names.contains(&target) {
+                self.names.insert(path.clone());
+                self.follow(target, links - 1);
+            }
+        }
+        self.names.insert(path);
+    }
+}
+
+/// Where a path leads that is told from a folder, without `..`.
+fn joined(folder: &Path, path: &Path) -> PathBuf {
+    let mut joined = folder.to_path_buf();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir => {
+                // Above a link is what is above that to which it leads.
+                if joined.is_symlink() {
+                    joined = fs::canonicalize(&joined).unwrap_or(joined);
+                }
+                joined.pop();
+            }
+            other => joined.push(other),
+        }
+    }
+    joined
 }
 
 /// Tells every so often, as long as somebody else may want to tell as well.
@@ -138,7 +185,7 @@ fn poll(period: Duration, tell: &Tell) -> Result<(), Problem> {
         loop {
             std::thread::sleep(period);
             match tell.upgrade() {
-                Some(tell) => tell(),
+                Some(tell) => tell(&[]),
                 None => return,
             }
         }
@@ -151,9 +198,7 @@ mod tests {
     use super::*;
 
     fn folders(path: &Path) -> BTreeSet<PathBuf> {
-        let mut found = BTreeSet::new();
-        places(path, &mut found, MOST_LINKS);
-        found
+        trace(path).folders
     }
 
     #[test]
@@ -178,14 +223,16 @@ mod tests {
         symlink("../v1", at("links/now")).unwrap();
         symlink("loop", at("loop")).unwrap();
         let found = folders(&at("links/now/deep/a.rt"));
-        for watched in ["links", "links/now/deep"] {
+        for watched in ["links", "links/now/deep", "v1/deep"] {
             assert!(found.contains(&at(watched)), "{watched}: {found:?}");
         }
-        assert!(
-            found
-                .iter()
-                .any(|found| fs::canonicalize(found).unwrap() == fs::canonicalize(at("v1/deep")).unwrap())
-        );
         assert!(folders(&at("loop")).contains(folder.path()));
+        // Also where a way out of a link goes.
+        symlink("links/now/../v1/deep/a.rt", at("back.rt")).unwrap();
+        let found = names(&at("back.rt"));
+        for name in ["back.rt", "v1/deep/a.rt"] {
+            assert!(found.contains(&at(name)), "{name}: {found:?}");
+        }
+        assert_eq!(names(&at("none.rt")).first(), Some(&at("none.rt")));
     }
 }

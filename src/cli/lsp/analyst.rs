@@ -38,7 +38,7 @@ impl Meaning {
             // Its lines are known already.
             let _ = text.set(document.text.clone());
         }
-        let (names, reads) = (world.names().clone(), world.asked());
+        let (names, reads) = (world.names(), world.asked());
         let edited = edits(view, &reads).map(|(key, edited)| (key.clone(), edited)).collect();
         Some(Meaning { analysis, reads, edited, names, texts, encoding: view.session.encoding })
     }

@@ -22,9 +22,16 @@ pub fn initialized(client: &Client, encoding: Encoding) -> lsp::InitializeResult
 
 /// What the client is asked to watch: scenes, and what they read.
 pub fn watched() -> lsp::RegistrationParams {
-    let pattern = "**/*.{rt,csv,png,jpg,jpeg,webp,hdr,exr,pfm,ply,obj,stl}";
-    let watchers =
-        vec![lsp::FileSystemWatcher { glob_pattern: lsp::GlobPattern::Pattern(pattern.into()), kind: None }];
+    let watch = |pattern: &str, kind| lsp::FileSystemWatcher {
+        glob_pattern: lsp::GlobPattern::Pattern(pattern.into()),
+        kind,
+    };
+    // Of a folder that comes or goes, some tell nothing but that.
+    let [comes, goes] = [lsp::WatchKind::Create, lsp::WatchKind::Delete].map(u32::from);
+    let watchers = vec![
+        watch("**/*.{rt,csv,png,jpg,jpeg,webp,hdr,exr,pfm,ply,obj,stl}", None),
+        watch("**", Some(lsp::WatchKind::Custom(comes | goes))),
+    ];
     let options = lsp::DidChangeWatchedFilesRegistrationOptions { watchers };
     let registration = lsp::Registration {
         id: "watched-files".into(),

@@ -1,7 +1,7 @@
 //! What is said of documents, to the client.
 
-use super::analyst::{Meaning, uri};
-use super::documents::{Kept, Key, MOST_TEXT};
+use super::analyst::Meaning;
+use super::documents::{Kept, Key, MOST_TEXT, MOST_TEXTS};
 use super::view::View;
 use gen_lsp_types as lsp;
 use rt_lang::diagnostic::{Code, Diagnostic, Severity};
@@ -40,7 +40,14 @@ pub fn found(meaning: &Meaning, key: &Key, view: &View) -> Found {
     let mut own = Said::new(view, key);
     let unknown = match view.documents.get(key).map(|document| document.kept) {
         None | Some(Kept::Whole) => None,
-        Some(Kept::TooLong) => Some(too_long()),
+        Some(Kept::TooLong) => Some(too_long(format!(
+            "a document has at most {} MiB, this is longer\nhelp: where it was made shorter, close it and open it again",
+            MOST_TEXT >> 20
+        ))),
+        Some(Kept::TooMuch) => Some(too_long(format!(
+            "all open documents have at most {} MiB together\nhelp: close others, then close this and open it again",
+            MOST_TEXTS >> 20
+        ))),
         Some(Kept::Lost) => Some(lost()),
     };
     let is_known = unknown.is_none();
@@ -71,15 +78,12 @@ pub fn found(meaning: &Meaning, key: &Key, view: &View) -> Found {
 }
 
 /// Says that a document is not looked at.
-fn too_long() -> lsp::Diagnostic {
+fn too_long(message: String) -> lsp::Diagnostic {
     lsp::Diagnostic {
         severity: Some(lsp::DiagnosticSeverity::Error),
         code: Some(lsp::Code::String(Code::E0406.as_str().into())),
         source: Some("rtc".into()),
-        message: lsp::Message::String(format!(
-            "a document has at most {} MiB, this is longer\nhelp: where it was made shorter, close it and open it again",
-            MOST_TEXT >> 20
-        )),
+        message: lsp::Message::String(message),
         ..lsp::Diagnostic::default()
     }
 }
@@ -151,7 +155,7 @@ fn words(diagnostic: &Diagnostic) -> String {
 #[derive(Debug, Default)]
 pub struct Board {
     by_document: BTreeMap<Key, Found>,
-    told: BTreeMap<Key, (Option<i32>, Vec<lsp::Diagnostic>)>,
+    told: BTreeMap<Key, lsp::PublishDiagnosticsParams>,
 }
 
 impl Board {
@@ -160,13 +164,13 @@ impl Board {
         let before = self.by_document.get(&document).into_iter().flat_map(BTreeMap::keys);
         let files: BTreeSet<Key> = before.chain(found.keys()).cloned().collect();
         self.by_document.insert(document, found);
-        files.into_iter().filter_map(|file| self.news(file, view)).collect()
+        files.into_iter().flat_map(|file| self.news(file, view)).collect()
     }
 
     /// Forgets a document that was closed.
     pub fn close(&mut self, document: &Key, view: &View) -> Vec<lsp::PublishDiagnosticsParams> {
         let found = self.by_document.remove(document).unwrap_or_default();
-        found.into_keys().filter_map(|file| self.news(file, view)).collect()
+        found.into_keys().flat_map(|file| self.news(file, view)).collect()
     }
 
     /// All that is said of a file as it is now: by its own analysis first, since what others say of it is mostly the same. None
@@ -196,24 +200,29 @@ impl Board {
         Some(said.filter(is_new).cloned().collect())
     }
 
-    /// What is to be told of a file, if that is not what was told.
-    fn news(&mut self, file: Key, view: &View) -> Option<lsp::PublishDiagnosticsParams> {
-        let all = self.all(&file, view)?;
-        let version = view.documents.get(&file).map(|document| document.version);
-        let told = self.told.get(&file);
-        let nothing_new = match told {
-            Some((before, said)) => *before == version && *said == all,
-            None => version.is_none() && all.is_empty(),
+    /// What is to be told of a file, if that is not what was told. A client may tell files apart by their addresses as they are
+    /// written: what was told under one is taken back under that one.
+    fn news(&mut self, file: Key, view: &View) -> Vec<lsp::PublishDiagnosticsParams> {
+        let Some(diagnostics) = self.all(&file, view) else { return vec![] };
+        let document = view.documents.get(&file);
+        let version = document.map(|document| document.version);
+        let before = self.told.remove(&file);
+        let uri = match (document, &before) {
+            (Some(document), _) => document.uri.clone(),
+            (None, Some(before)) => before.uri.clone(),
+            (None, None) => file.uri(),
         };
-        if nothing_new {
-            return None;
+        let now = lsp::PublishDiagnosticsParams { uri, version, diagnostics };
+        if version.is_some() || !now.diagnostics.is_empty() {
+            self.told.insert(file, now.clone());
         }
-        let uri = uri(view, &file);
-        if version.is_none() && all.is_empty() {
-            self.told.remove(&file);
-        } else {
-            self.told.insert(file, (version, all.clone()));
-        }
-        Some(lsp::PublishDiagnosticsParams { uri, version, diagnostics: all })
+        let nothing = |at: &lsp::PublishDiagnosticsParams| lsp::PublishDiagnosticsParams {
+            uri: at.uri.clone(),
+            version: None,
+            diagnostics: vec![],
+        };
+        let before = before.unwrap_or_else(|| nothing(&now));
+        let elsewhere = (before.uri != now.uri && !before.diagnostics.is_empty()).then(|| nothing(&before));
+        elsewhere.into_iter().chain((before != now).then_some(now)).collect()
     }
 }

@@ -13,8 +13,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The longest text of a document, in bytes.
-pub const MOST_TEXT: usize = 64 << 20;
+/// The longest text of a document, in bytes: what it means takes some hundred times as many.
+pub const MOST_TEXT: usize = 16 << 20;
+/// The bytes of all their texts together.
+pub const MOST_TEXTS: usize = 32 << 20;
 
 /// What tells documents apart.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -55,6 +57,8 @@ pub enum Kept {
     Whole,
     /// There is more of it than is kept.
     TooLong,
+    /// There is more of all documents together than is kept.
+    TooMuch,
     /// It was edited in a way that cannot be understood.
     Lost,
 }
@@ -119,13 +123,25 @@ pub struct Document {
     pub stamp: u64,
     /// The stamp with which it was edited last.
     pub edited: u64,
-    newest: Arc<AtomicU64>,
+    newest: Arc<Newest>,
+}
+
+/// The stamps of a document now.
+#[derive(Debug, Default)]
+struct Newest {
+    stamp: AtomicU64,
+    edited: AtomicU64,
 }
 
 impl Document {
     /// Whether it has changed since.
     pub fn is_stale(&self) -> bool {
-        self.newest.load(Ordering::Relaxed) != self.stamp
+        self.newest.stamp.load(Ordering::Relaxed) != self.stamp
+    }
+
+    /// Whether the client has edited or closed it since.
+    pub fn is_edited(&self) -> bool {
+        self.newest.edited.load(Ordering::Relaxed) != self.edited
     }
 
     fn take(&mut self, text: String) {
@@ -201,6 +217,7 @@ impl Documents {
             Document { uri, version, text: text_of, kept, stamp: 0, edited: self.stamps + 1, newest };
         document.take(text);
         self.open.insert(key.clone(), Arc::new(document));
+        self.bound(&key);
         self.touch(&key);
         key
     }
@@ -216,15 +233,25 @@ impl Documents {
         let version = changed.text_document.version.as_i64().and_then(|version| version.try_into().ok());
         document.version = version.unwrap_or(document.version);
         document.edited = self.stamps + 1;
+        self.bound(key);
         self.touch(key);
         true
+    }
+
+    /// Gives up the text of a document with which there is more than is kept.
+    fn bound(&mut self, key: &Key) {
+        let all: usize = self.open.values().map(|document| document.text.whole().len()).sum();
+        if let Some(document) = self.open.get_mut(key).filter(|_| all > MOST_TEXTS) {
+            Arc::make_mut(document).lose(Kept::TooMuch);
+        }
     }
 
     /// What is known of a document is out of date. Whether it is open.
     pub fn touch(&mut self, key: &Key) -> bool {
         self.stamps += 1;
         let Some(document) = self.open.get_mut(key) else { return false };
-        document.newest.store(self.stamps, Ordering::Relaxed);
+        document.newest.edited.store(document.edited, Ordering::Relaxed);
+        document.newest.stamp.store(self.stamps, Ordering::Relaxed);
         Arc::make_mut(document).stamp = self.stamps;
         true
     }
@@ -233,7 +260,8 @@ impl Documents {
     pub fn close(&mut self, key: &Key) {
         self.stamps += 1;
         if let Some(document) = self.open.remove(key) {
-            document.newest.store(self.stamps, Ordering::Relaxed);
+            document.newest.edited.store(self.stamps, Ordering::Relaxed);
+            document.newest.stamp.store(self.stamps, Ordering::Relaxed);
         }
     }
 }
@@ -279,5 +307,23 @@ mod tests {
         assert_eq!(changed(&long, &[put(0, "y"), cut.clone()]), (String::new(), Kept::TooLong));
         assert_eq!(changed(&long, &[cut, put(0, "y")]), ("yx".into(), Kept::Whole));
         assert_eq!(changed(&long, &[put(0, "y"), json!({ "text": "c" })]), ("c".into(), Kept::Whole));
+    }
+
+    #[test]
+    fn all_documents_together_are_bounded() {
+        let mut documents = Documents::default();
+        let kept: Vec<Kept> = (0..5)
+            .map(|n| {
+                let key = documents.open(format!("untitled:{n}").into(), 1, "x".repeat(MOST_TEXTS / 3));
+                documents.get(&key).unwrap().kept
+            })
+            .collect();
+        let (whole, much) = (Kept::Whole, Kept::TooMuch);
+        assert_eq!(kept, [whole, whole, whole, much, much]);
+        let bytes: usize = documents.iter().map(|(_, document)| document.text.whole().len()).sum();
+        assert!(bytes <= MOST_TEXTS);
+        documents.close(&Key::Other("untitled:0".into()));
+        let key = documents.open("untitled:4".to_string().into(), 2, "x".repeat(MOST_TEXTS / 3));
+        assert_eq!(documents.get(&key).unwrap().kept, whole);
     }
 }

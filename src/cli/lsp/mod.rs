@@ -13,7 +13,7 @@
 //! | [`client`], [`capabilities`] | what the two sides can do |
 //! | [`document`], [`documents`], [`uri`] | the texts as the client edits them, and their addresses |
 //! | [`view`], [`world`] | what was known when something was asked, and the files around a document |
-//! | [`reads`] | which documents mean something else when a file changes |
+//! | [`reads`], [`events`] | which documents mean something else when a file changes |
 //! | [`work`], [`analyst`] | the threads that answer, and what documents mean |
 //! | [`requests`] | one question of the protocol each |
 //! | [`diagnostics`], [`pages`] | what is said of documents, and where it is explained |
@@ -31,6 +31,7 @@ mod document;
 mod documents;
 mod edits;
 mod ending;
+mod events;
 mod frame;
 mod message;
 mod pages;
@@ -49,6 +50,8 @@ use super::args::Lsp;
 use super::interrupt::Interrupt;
 use super::{Exit, Problem, plain};
 use server::Server;
+#[cfg(fuzzing)]
+pub use server::script;
 
 /// Serves until the client says so or is gone.
 pub fn run(arguments: &Lsp, interrupt: &Interrupt) -> Result<Exit, Problem> {

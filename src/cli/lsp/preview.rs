@@ -85,6 +85,7 @@ impl Previews {
         let path =
             key.path().ok_or_else(|| Failure::plain("save it first: what it reads is found from there"))?;
         let served = (key.clone(), about.camera.clone());
+        self.served.retain(|_, live| !live.is_broken());
         if let Some(live) = self.served.get(&served) {
             return Ok(live.url.clone());
         }
@@ -106,10 +107,13 @@ impl Previews {
             asked: self.changes.clone(),
             told: told.clone(),
         };
-        let (newest, told) = (self.newest.clone(), told.clone());
+        let (newest, tell, name) = (self.newest.clone(), told.clone(), path.display().to_string());
+        let broken = move || drop(tell.send(broken(&name)));
+        let told = told.clone();
         let show = move |opened: Opened| show(&newest, &told, &opened);
-        let (load, store, show) = (Box::new(load), Box::new(store), Box::new(show));
-        let live = live::preview(&watch, load, store, show, Terminal::silent(), interrupt).map_err(wrong)?;
+        let (load, store, show, broken) = (Box::new(load), Box::new(store), Box::new(show), Box::new(broken));
+        let live = live::preview(&watch, load, store, show, broken, Terminal::silent(), interrupt);
+        let live = live.map_err(wrong)?;
         let url = live.url.clone();
         self.served.insert(served, live);
         Ok(url)
@@ -186,15 +190,22 @@ fn load(newest: &Newest, key: &Key, reading: &Reading, overrides: &Overrides) ->
             "what stands in the editor is not known: close the scene there and open it again",
         ));
     }
-    let disk = Disk::below(root)?;
+    let mut disk = Disk::below(root)?;
     let place = disk.path_of(path)?;
     for (key, document) in view.documents.iter().filter(|(_, document)| document.kept == Kept::Whole) {
-        if let Some(place) = key.path().and_then(|path| disk.path_of(path).ok()) {
-            disk.hold(place, document.text.whole().as_bytes());
+        if let Some(path) = key.path() {
+            disk.hold(path, document.text.whole().as_bytes());
         }
     }
     let source = Source::new(path.display().to_string(), document.text.whole().to_string());
     Ok(scene::take_from(disk, place, Input::of(source), reading, overrides))
+}
+
+/// Says that a preview is served no more.
+fn broken(name: &str) -> Told {
+    let message = format!("the preview of {name} has ended: this is a bug in rtc. It can be started again.");
+    let params = lsp::ShowMessageParams { kind: lsp::MessageType::Error, message };
+    Told::Notifies(lsp::LspNotificationMethod::WindowShowMessage.as_str().into(), json!(params))
 }
 
 /// Has the client show a place that was clicked on.

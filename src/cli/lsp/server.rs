@@ -7,8 +7,9 @@ use super::capabilities::{initialized, watched};
 use super::client::{Client, encoding};
 use super::commands::{self, Order, Renders};
 use super::diagnostics::Board;
-use super::documents::{Changed, Documents, Key};
+use super::documents::{Changed, Documents, Key, MOST_TEXTS};
 use super::ending;
+use super::events::Events;
 use super::pages::Pages;
 use super::preview::{self, Previews};
 use super::reads::Reads;
@@ -20,6 +21,7 @@ use super::work::{Answer, Ask, Desk, Failure, Heard, Question, Told, guarded};
 use crate::cli::Exit;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::live::watcher::Watcher;
+use changes::{Held, Looks};
 use crossbeam_channel::{Receiver, Sender, bounded, select};
 use gen_lsp_types as lsp;
 use lsp::LspNotificationMethod as Method;
@@ -32,6 +34,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The most requests that wait at once.
 const MOST_WAITING: usize = 1_000;
+/// The most bytes of texts that are held, those that are no longer so by requests that wait.
+const MOST_HELD: usize = 3 * MOST_TEXTS;
 /// What threads tell that waits to be heard.
 const QUEUE: usize = 64;
 
@@ -62,10 +66,18 @@ pub struct Server {
     renders: Renders,
     /// Tells of files that change, where the client does not.
     watcher: Option<Watcher>,
+    /// What it has told.
+    events: Arc<Events>,
+    rings: Receiver<()>,
+    looks: Looks,
     /// What waits for an answer: of the client each with what says that none is wanted, and of the server each with who hears
     /// it.
     waiting: ReqQueue<Arc<AtomicBool>, Heard>,
+    /// Of the client.
     count: usize,
+    /// Of the server.
+    asked: usize,
+    held: Held,
     board: Board,
     reads: Reads,
 }
@@ -78,6 +90,7 @@ impl Server {
     /// Where the system gives no more threads.
     pub fn new(connection: Connection, root: Option<PathBuf>, interrupt: Interrupt) -> io::Result<Server> {
         let (tell, told) = bounded(QUEUE);
+        let (events, rings) = Events::new();
         let (client, pages) = (Client::default(), Pages::new(interrupt.clone()));
         let (encoding, memory) = (encoding(&Value::Null), Arc::default());
         let session = Session { client, encoding, root, pages, memory };
@@ -90,12 +103,17 @@ impl Server {
             renders: Renders::default(),
             view,
             watcher: None,
+            events: Arc::new(events),
+            rings,
+            looks: Looks::default(),
             desk: Desk::start(&tell)?,
             told,
             tell,
             interrupt,
             waiting: ReqQueue::default(),
             count: 0,
+            asked: 0,
+            held: Held::default(),
             board: Board::default(),
             reads: Reads::default(),
         })
@@ -103,7 +121,8 @@ impl Server {
 
     /// Serves until `exit` or the end of the input.
     pub fn run(mut self) -> Exit {
-        let (messages, told) = (self.connection.receiver.clone(), self.told.clone());
+        let (messages, told, rings) =
+            (self.connection.receiver.clone(), self.told.clone(), self.rings.clone());
         loop {
             select! {
                 recv(messages) -> message => match message {
@@ -119,9 +138,13 @@ impl Server {
                     }
                     Err(_) => break,
                 },
+                recv(rings) -> _ => {
+                    let _ = guarded(|| self.hear_events());
+                }
             }
         }
         // Others may be at work until the process ends.
+        self.desk.close();
         self.interrupt.close();
         // The protocol's codes: 1 for an end that was not announced.
         if self.life == Life::Ending { Exit::Done } else { Exit::Diagnostics }
@@ -150,6 +173,7 @@ impl Server {
             }
             Message::Response(response) => {
                 if let Some(heard) = self.waiting.outgoing.complete(response.id) {
+                    self.asked -= 1;
                     heard(
                         response
                             .response_result
@@ -185,7 +209,7 @@ impl Server {
                 self.life = Life::Ending;
                 self.send(id, Ok(Value::Null));
             }
-            (Life::Serving, _) if self.count >= MOST_WAITING => {
+            (Life::Serving, _) if self.count >= MOST_WAITING || self.held.bytes() > MOST_HELD => {
                 self.send(id, Err(Failure::plain("too many requests wait already")));
             }
             (Life::Serving, lsp::LspRequestMethod::WorkspaceExecuteCommand) => {
@@ -324,11 +348,11 @@ impl Server {
             }
             Method::TextDocumentDidSave => {
                 let lsp::DidSaveTextDocumentParams { text_document, .. } = read(params)?;
-                self.saved_at(vec![Key::of(&text_document.uri)]);
+                self.saved_at(path_of(text_document.uri.as_ref()));
             }
             Method::WorkspaceDidChangeWatchedFiles => {
                 let lsp::DidChangeWatchedFilesParams { changes } = read(params)?;
-                self.saved_at(changes.iter().map(|change| Key::of(&change.uri)).collect());
+                self.saved_at(changes.iter().filter_map(|change| path_of(change.uri.as_ref())));
             }
             Method::WorkspaceDidChangeWorkspaceFolders => {
                 let lsp::DidChangeWorkspaceFoldersParams { event } = read(params)?;
@@ -378,7 +402,10 @@ impl Server {
                 self.finish(id, answer);
             }
             Told::Gone => {}
-            Told::Changed => self.saved_at(self.reads.files().into_iter().cloned().collect()),
+            Told::Unanswered(_, question) if question.cancelled.load(Ordering::Relaxed) => {}
+            Told::Unanswered(lane, question) => {
+                self.desk.ask(lane, Question { view: self.view.clone(), ..question });
+            }
             Told::Notifies(method, params) => self.notify(method, params),
             Told::Asks(ask) => self.ask_client(ask),
             Told::Looked { key, view, reads, found } => {
@@ -416,29 +443,21 @@ impl Server {
         }
     }
 
-    /// Has the client tell of scenes, and what they read, that change on the disk; or somebody else, where it cannot.
+    /// Has the client tell of scenes, and what they read, that change on the disk, if it can.
     fn watch(&mut self) {
-        if !self.view.session.client.watches {
-            let tell = self.tell.clone();
-            // One that waits to be heard is as good as two.
-            self.watcher = Watcher::new(None, move || drop(tell.try_send(Told::Changed))).ok();
-            return;
+        if self.view.session.client.watches {
+            self.ask_client(Ask::new(lsp::LspRequestMethod::ClientRegisterCapability, json!(watched())));
         }
-        self.ask_client(Ask::new(lsp::LspRequestMethod::ClientRegisterCapability, json!(watched())));
     }
 
     /// Asks the client something.
     fn ask_client(&mut self, Ask { method, params, heard }: Ask) {
+        if self.asked >= MOST_WAITING {
+            return heard(Err(Failure::plain("the editor answers nothing")));
+        }
+        self.asked += 1;
         let request = self.waiting.outgoing.register(method, params, heard);
         let _ = self.connection.sender.send(request.into());
-    }
-
-    /// Watches the files that are read where they are saved.
-    fn follow(&mut self) {
-        let Some(watcher) = &mut self.watcher else { return };
-        let saved = |key: &&Key| self.view.documents.get(key).is_none();
-        let files = self.reads.files().into_iter().filter(saved);
-        watcher.follow(files.filter_map(Key::path).map(PathBuf::from));
     }
 
     fn publish(&self, params: lsp::PublishDiagnosticsParams) {
@@ -459,5 +478,7 @@ impl Server {
     }
 }
 
+#[cfg(any(test, fuzzing))]
+pub mod script;
 #[cfg(test)]
 mod tests;

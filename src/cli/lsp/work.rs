@@ -70,8 +70,8 @@ pub struct Question {
 pub enum Told {
     /// A question is answered: its request, the answer, and whether nobody waits for it any more.
     Answered(RequestId, Answer<Value>, Arc<AtomicBool>),
-    /// Files may have changed.
-    Changed,
+    /// A question has no answer yet, since what was known when it came means something else by now, though it was not edited.
+    Unanswered(Lane, Question),
     /// Something for the client, by method and parameters.
     Notifies(String, Value),
     /// A question for the client.
@@ -131,6 +131,8 @@ struct Waiting {
     changed: BTreeMap<Key, Arc<View>>,
     /// The one among them that was changed by hand.
     first: Option<Key>,
+    /// Whether nobody listens any more.
+    closed: bool,
 }
 
 /// Something to do.
@@ -164,12 +166,20 @@ impl Desk {
         self.news.notify_all();
     }
 
-    /// Asks for a look at documents that may mean something else now, at the first one before the others.
+    /// Asks for a look at documents that may mean something else now, at the first one before the others. All that wait are
+    /// looked at as they are by then.
     pub fn look(&self, keys: impl IntoIterator<Item = Key>, view: &Arc<View>) {
         let mut waiting = self.lock();
+        waiting.changed.values_mut().for_each(|waiting| *waiting = view.clone());
         let mut keys = keys.into_iter().peekable();
         waiting.first = keys.peek().cloned();
         waiting.changed.extend(keys.map(|key| (key, view.clone())));
+        self.news.notify_all();
+    }
+
+    /// Ends the threads, as soon as they have done what they are at.
+    pub fn close(&self) {
+        self.lock().closed = true;
         self.news.notify_all();
     }
 
@@ -180,16 +190,19 @@ impl Desk {
         waiting.meaning.retain(|question| question.id != *id);
     }
 
-    /// Waits for something to do.
-    fn next(&self, lane: Lane) -> Job {
+    /// Waits for something to do; none at the end.
+    fn next(&self, lane: Lane) -> Option<Job> {
         let mut waiting = self.lock();
         loop {
+            if waiting.closed {
+                return None;
+            }
             let found = match lane {
                 Lane::Text => waiting.text.pop_front().map(Job::Question),
                 Lane::Meaning => waiting.next_of_meaning(),
             };
             match found {
-                Some(job) => return job,
+                Some(job) => return Some(job),
                 None => waiting = self.news.wait(waiting).unwrap_or_else(PoisonError::into_inner),
             }
         }
@@ -222,41 +235,55 @@ struct Worker {
 impl Worker {
     /// Until nobody listens.
     fn run(mut self, lane: Lane) {
-        loop {
-            let job = self.desk.next(lane);
-            let asked = match &job {
-                Job::Question(question) => Some((question.id.clone(), question.cancelled.clone())),
-                Job::Look(..) => None,
+        while let Some(job) = self.desk.next(lane) {
+            let told = match job {
+                Job::Question(question) => Some(self.answer(lane, question)),
+                Job::Look(key, view) => {
+                    self.look(&key, &view);
+                    None
+                }
             };
-            let answer = guarded(|| self.work(job)).unwrap_or_else(|failure| {
-                // What was being found out may be half known.
-                self.analyst = Analyst::default();
-                Some(Err(failure))
-            });
-            if let Some(((id, cancelled), answer)) = asked.zip(answer)
-                && self.told.send(Told::Answered(id, answer, cancelled)).is_err()
-            {
+            if told.is_some_and(|told| self.told.send(told).is_err()) {
                 return;
             }
         }
     }
 
-    fn work(&mut self, job: Job) -> Option<Answer<Value>> {
-        match job {
-            Job::Question(Question { run, params, view, cancelled, .. }) => {
-                self.analyst.keep(&view);
-                let mut asked = Asked { view: &view, cancelled: &cancelled, worker: self };
-                Some(run(&mut asked, params))
+    fn answer(&mut self, lane: Lane, question: Question) -> Told {
+        let again = AtomicBool::new(false);
+        let Question { id, run, params, view, cancelled } = question;
+        let kept = params.clone();
+        let answer = self.work(|worker| {
+            worker.analyst.keep(&view);
+            run(&mut Asked { view: &view, cancelled: &cancelled, again: &again, worker }, params)
+        });
+        match answer.and_then(|answer| answer) {
+            Err(failure)
+                if failure.code == ErrorCode::ContentModified as i32 && again.load(Ordering::Relaxed) =>
+            {
+                Told::Unanswered(lane, Question { id, run, params: kept, view, cancelled })
             }
-            Job::Look(key, view) => {
-                self.analyst.keep(&view);
-                let cancelled = AtomicBool::new(false);
-                let mut asked = Asked { view: &view, cancelled: &cancelled, worker: self };
-                // What is out of date is looked at again soon.
-                let _ = asked.meaning_of(&key);
-                None
-            }
+            answer => Told::Answered(id, answer, cancelled),
         }
+    }
+
+    fn look(&mut self, key: &Key, view: &Arc<View>) {
+        let (cancelled, again) = (AtomicBool::new(false), AtomicBool::new(false));
+        // What is out of date is looked at again soon.
+        let _ = self.work(|worker| {
+            worker.analyst.keep(view);
+            let _ = Asked { view, cancelled: &cancelled, again: &again, worker }.meaning_of(key);
+        });
+    }
+
+    /// Does something that may panic.
+    fn work<T>(&mut self, work: impl FnOnce(&mut Worker) -> T) -> Answer<T> {
+        let done = guarded(|| work(self));
+        if done.is_err() {
+            // What was being found out may be half known.
+            self.analyst = Analyst::default();
+        }
+        done
     }
 }
 
@@ -274,6 +301,8 @@ pub struct Asked<'a> {
     /// What was known when it came.
     pub view: &'a Arc<View>,
     cancelled: &'a AtomicBool,
+    /// Whether something was out of date that the client has not edited: it is asked about again as it is then.
+    again: &'a AtomicBool,
     worker: &'a mut Worker,
 }
 
@@ -299,8 +328,11 @@ impl Asked<'_> {
         if self.is_cancelled() {
             return Some(Failure::cancelled());
         }
-        let changed = || Failure::new(ErrorCode::ContentModified, "the document has changed");
-        document.is_stale().then(changed)
+        if !document.is_stale() {
+            return None;
+        }
+        self.again.store(!document.is_edited(), Ordering::Relaxed);
+        Some(Failure::new(ErrorCode::ContentModified, "the document has changed"))
     }
 
     /// What a document means that is open, and tells what is new; none where it is not open.
@@ -336,6 +368,7 @@ mod tests {
     use super::super::pages::Pages;
     use super::super::view::Session;
     use super::*;
+    use serde_json::json;
 
     #[test]
     fn a_panic_is_an_answer() {
@@ -345,10 +378,8 @@ mod tests {
         assert_eq!(guarded(|| 4), Ok(4));
     }
 
-    #[test]
-    fn behind_a_panic_the_next_question_is_answered() {
-        let (tell, told) = crossbeam_channel::bounded(8);
-        let desk = Desk::start(&tell).unwrap();
+    /// What is known where these are open.
+    fn view(documents: &Documents) -> Arc<View> {
         let session = Session {
             client: Client::default(),
             encoding: Encoding::Utf16,
@@ -356,8 +387,14 @@ mod tests {
             pages: Pages::default(),
             memory: Arc::default(),
         };
-        let view =
-            Arc::new(View { session: Arc::new(session), documents: Documents::default(), folders: vec![] });
+        Arc::new(View { session: Arc::new(session), documents: documents.clone(), folders: vec![] })
+    }
+
+    #[test]
+    fn behind_a_panic_the_next_question_is_answered() {
+        let (tell, told) = crossbeam_channel::bounded(8);
+        let desk = Desk::start(&tell).unwrap();
+        let view = view(&Documents::default());
         let ask = |lane: Lane, id: i32, run: Run| {
             let (params, cancelled) = (Value::Null, Arc::default());
             desk.ask(lane, Question { id: id.into(), run, params, view: view.clone(), cancelled });
@@ -372,5 +409,38 @@ mod tests {
             let wrong: Result<Value, i32> = Err(ErrorCode::InternalError as i32);
             assert_eq!(answers, [(RequestId::from(1), wrong), (RequestId::from(2), Ok(Value::Null))]);
         }
+    }
+
+    #[test]
+    fn a_question_about_what_was_not_edited_is_put_again() {
+        let (tell, told) = crossbeam_channel::bounded(8);
+        let desk = Desk::start(&tell).unwrap();
+        let mut documents = Documents::default();
+        let key = documents.open("untitled:a".to_string().into(), 1, "sphere {}".into());
+        let before = view(&documents);
+        let ask = |view: &Arc<View>| {
+            let run: Run = |asked, params| {
+                let uri = "untitled:a".to_string().into();
+                asked.meaning(&uri).map(|_| params)
+            };
+            let (params, cancelled, view) = (json!(7), Arc::default(), view.clone());
+            desk.ask(Lane::Meaning, Question { id: 1.into(), run, params, view, cancelled });
+            loop {
+                match told.recv().unwrap() {
+                    Told::Looked { .. } => {}
+                    other => return other,
+                }
+            }
+        };
+        // Something that it reads is another.
+        documents.touch(&key);
+        let Told::Unanswered(Lane::Meaning, question) = ask(&before) else { panic!("answered") };
+        assert_eq!((question.id, question.params), (1.into(), json!(7)));
+        let now = view(&documents);
+        let Told::Answered(_, Ok(answer), _) = ask(&now) else { panic!("not answered") };
+        assert_eq!(answer, json!(7));
+        documents.open("untitled:a".to_string().into(), 2, "sphere {}".into());
+        let Told::Answered(_, Err(failure), _) = ask(&now) else { panic!("answered") };
+        assert_eq!(failure.code, ErrorCode::ContentModified as i32);
     }
 }

@@ -325,7 +325,7 @@ fn a_long_document_is_edited_within_bounds() {
     let codes = client.codes("long.rt", Some(11));
     assert!(!codes.is_empty());
     #[cfg(target_os = "linux")]
-    assert!(client.memory() < 2500 << 20, "{} MB", client.memory() >> 20);
+    assert!(client.memory() < 600 << 20, "{} MB", client.memory() >> 20);
     assert_eq!(client.end(), Some(0));
 }
 
