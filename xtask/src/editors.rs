@@ -135,9 +135,11 @@ fn helix(place: &Place, newer: &Newer) -> Outcome {
     let told =
         told.and_then(|part| part.split("```").next()).ok_or("editors/README.md has no lines for Helix")?;
     let lines = told.replace("/path/to/editors", &place.root.join("editors").to_string_lossy());
-    let path = format!("{}:/usr/sbin:/usr/bin:/sbin:/bin", folder(&place.rtc).display());
-    let mut setup = alone(&newer.line(&["sh", "-euc", &lines]), place);
-    let output = setup.env("PATH", &path).output().map_err(|error| error.to_string())?;
+    // It looks where the page says, and finds `rtc` on the path.
+    let path = format!("PATH={}:/usr/bin:/bin", folder(&place.rtc).display());
+    let inside = |program: &[&str]| newer.line(&[&["env", "-u", "XDG_CONFIG_HOME", &path], program].concat());
+    let output =
+        alone(&inside(&["sh", "-euc", &lines]), place).output().map_err(|error| error.to_string())?;
     let health = String::from_utf8_lossy(&output.stdout).into_owned();
     let works = |what: &str| health.lines().any(|line| line.contains(what) && line.contains('✓'));
     let wanted = ["rtc", "Tree-sitter parser", "Highlight", "Textobject", "Indent"];
@@ -145,7 +147,7 @@ fn helix(place: &Place, newer: &Newer) -> Outcome {
         return Err(format!("no {lacking}\n{health}\n{}", String::from_utf8_lossy(&output.stderr)));
     }
     println!("  helix: it has what it needs");
-    screen(place, "helix", &newer.line(&["env", &format!("PATH={path}"), "hx"]))
+    screen(place, "helix", &inside(&["hx"]))
 }
 
 /// Visual Studio Code itself cannot be had here: its package is checked, its colours are tested, and it is packed.
