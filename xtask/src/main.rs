@@ -8,6 +8,7 @@ mod denoise;
 mod editors;
 mod export;
 mod lsp;
+mod newer;
 mod preview;
 mod processors;
 mod readme;

@@ -17,7 +17,7 @@ light { at: (2, 3, 2)m, power: 60W }
 camera { from: (0, 1, 4)m, look: ball }
 ")
 
-(defun tell (what) (princ (format "  emacs: %s\n" what)))
+(defun tell (what) (princ (format "  emacs %d: %s\n" emacs-major-version what)))
 
 (defun check (holds what)
   (unless holds (error "%s" what)))

@@ -6,8 +6,9 @@
 (setq inhibit-startup-screen t
       native-comp-async-report-warnings-errors nil)
 (load-theme 'wombat t)
-(add-hook 'rt-mode-hook #'eglot-ensure)
-(add-hook 'rt-mode-hook #'display-line-numbers-mode)
+(dolist (hook '(rt-mode-hook rt-ts-mode-hook))
+  (add-hook hook #'eglot-ensure)
+  (add-hook hook #'display-line-numbers-mode))
 
 (defvar waits
   (run-with-timer 0.2 0.2 (lambda ()

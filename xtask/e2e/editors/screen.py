@@ -45,7 +45,7 @@ camera { from: (0, 9, 26)cm, look: ball }
 """
 
 # What the message says. The editor is to show it within so many seconds, and then to be still for some.
-MESSAGE = "wants a length"
+MESSAGE = "wants a"
 PATIENCE, STILL = 60, 1.5
 
 # What a terminal without a theme shows.
@@ -81,11 +81,15 @@ def page(screen):
 
 
 class Screen(pyte.Screen):
-    """Of what Vim asks a terminal for (CSI ? 4 m), pyte makes a colour, and stumbles."""
+    """Of what an editor asks a terminal for (CSI ? 4 m, CSI ? 996 n), pyte makes something else, and stumbles."""
 
     def select_graphic_rendition(self, *attributes, private=False):
         if not private:
             super().select_graphic_rendition(*attributes)
+
+    def report_device_status(self, mode, private=False):
+        if not private:
+            super().report_device_status(mode)
 
 
 def shows(screen):

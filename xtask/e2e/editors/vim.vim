@@ -35,7 +35,7 @@ function Run()
 
   for scene in glob($ROOT .. '/examples/**/*.rt', 0, 1)
     let written = readfile(scene)
-    edit laid-out.rt
+    edit indented.rt
     call setline(1, written)
     %left
     normal! gg=G
