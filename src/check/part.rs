@@ -40,6 +40,7 @@ impl<'a> Checker<'a> {
     ) -> (StatementKind, Type) {
         if !matches!(place, Place::Main | Place::Imported | Place::Part) {
             self.report(errors::not_here("part", name, "a file or another part"));
+            self.quietly(|checker| checker.part(name, body, statement, Place::Part));
             return (StatementKind::Nothing, Type::Invalid);
         }
         let (items, fields) = apart(&body.entries);
@@ -263,6 +264,7 @@ impl<'a> Checker<'a> {
     ) -> (StatementKind, Type) {
         if !matches!(place, Place::Main | Place::Imported | Place::Part) {
             self.report(errors::not_here("fn", name, "a file or a part"));
+            self.quietly(|checker| checker.function(name, parameters, result, value, statement, Place::Part));
             return (StatementKind::Nothing, Type::Invalid);
         }
         let before = self.nodes;
