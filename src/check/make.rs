@@ -168,7 +168,9 @@ impl Checker<'_> {
                         _ => None,
                     };
                     let field = built_in.and_then(|kind| self.part_field(kind, &construct.kind));
+                    let is_off = field.is_some() && self.prefixes(statement).0;
                     match (kind, field, name) {
+                        (_, Some(_), None) if is_off => misplaced.push(construct),
                         (_, Some(index), None) => parts.push((index, construct)),
                         (Some(kind), Some(index), Some(name)) => {
                             self.report(errors::named_part(&construct.kind, name, &self.kind_name(kind)));
@@ -397,7 +399,7 @@ struct Sorted<'t> {
     items: Vec<Item<'t>>,
     /// Things that are fields, each with the field's index.
     parts: Vec<(usize, &'t ast::Construct)>,
-    /// Things that do not belong here, which was reported.
+    /// Things that are left out, or do not belong here, which was reported.
     misplaced: Vec<&'t ast::Construct>,
     /// Statements of which it is not known whether they belong here, or that do not.
     lost: Vec<&'t ast::Statement>,

@@ -121,6 +121,8 @@ impl<'a> Checker<'a> {
         range: Option<&ast::Expr>,
         place: Place,
     ) -> (StatementKind, Type) {
+        // Statements inside the default have their own.
+        let doc = self.doc.take();
         if PLACED.iter().any(|field| name.text == field.name) && !syntax::RESERVED.contains(&&*name.text) {
             self.report(errors::param_hides_field(name));
         }
@@ -146,7 +148,6 @@ impl<'a> Checker<'a> {
         }
         // Of a type that its default does not have, which of the two was meant is not known.
         let ty = if fits { declared.ty() } else { Type::Invalid };
-        let doc = self.doc.take();
         let default = self.text(default.span).into();
         let scope = self.current();
         let Some(known) = scope.names.get(&name.text).map(|&known| &scope.known[known]) else {

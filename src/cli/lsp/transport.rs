@@ -13,6 +13,9 @@ use std::thread::{Builder, JoinHandle};
 /// Messages that wait in one direction.
 const QUEUE: usize = 256;
 
+/// How much stack writes an answer: those of selections lie deep in each other.
+const STACK: usize = 8 << 20;
+
 /// A connection over standard input and output, and the thread that writes: it ends once the connection is gone and all
 /// that was sent is written.
 ///
@@ -23,7 +26,7 @@ pub fn start() -> io::Result<(Connection, JoinHandle<()>)> {
     let (read, receiver) = bounded(QUEUE);
     let (sender, written) = bounded(QUEUE);
     Builder::new().name("read".into()).spawn(move || read_all(&read))?;
-    let writer = Builder::new().name("write".into()).spawn(move || write_all(&written))?;
+    let writer = Builder::new().name("write".into()).stack_size(STACK).spawn(move || write_all(&written))?;
     Ok((Connection { sender, receiver }, writer))
 }
 
