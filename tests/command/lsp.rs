@@ -3,6 +3,7 @@
 mod answers;
 mod client;
 mod edits;
+mod names;
 mod preview;
 mod robust;
 mod session;
