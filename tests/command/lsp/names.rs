@@ -41,7 +41,11 @@ impl<'d> Editor<'d> {
             "position": { "line": line, "character": character },
             "newName": name,
         });
-        let answer = self.client.ask("textDocument/rename", params);
+        let mut answer = self.client.ask("textDocument/rename", params.clone());
+        // What has changed on the disk meanwhile is asked about again.
+        while answer.as_ref().is_err_and(|error| error["code"] == -32801) {
+            answer = self.client.ask("textDocument/rename", params.clone());
+        }
         let edit = answer.map_err(|error| error["message"].as_str().unwrap().to_string())?;
         for changed in edit["documentChanges"].as_array().unwrap() {
             let uri = changed["textDocument"]["uri"].as_str().unwrap();
