@@ -369,12 +369,25 @@ impl Compiled {
         const LEAST_CUT: f64 = 0.01;
         let Some(from) = self.provenance(sources) else { return vec![] };
         let mut said = from.findings(feedback, noise);
+        said.retain(|warning| !self.explains(warning));
         let (share, bounces) = (feedback.cut.values().sum(), from.scene.trace.bounces);
         if share >= LEAST_CUT && bounces >= FEW_BOUNCES {
             said.push(from.point_at_cut(self.warning(&Finding::Cut { share, bounces }), feedback));
         }
         allow::allow(&self.allows, &mut said);
         said
+    }
+
+    /// Whether why a light gives nothing was said before there was a picture, or is allowed: that it is dark, or shut in.
+    fn explains(&self, warning: &Diagnostic) -> bool {
+        let is_why = |code: Code| matches!(code, Code::W0603 | Code::W0604);
+        let place = warning.primary.span;
+        let mut said = self.diagnostics.iter().filter(|said| is_why(said.code));
+        let mut allowed = self.allows.iter().filter(|allow| is_why(allow.code));
+        let names = |said: &Diagnostic| {
+            said.primary.span == place || said.labels.iter().any(|label| label.span == place)
+        };
+        warning.code == Code::W0705 && (said.any(names) || allowed.any(|allow| allow.on.contains(place)))
     }
 
     /// What a finished picture gives cause to say, unless the source allows it.

@@ -57,8 +57,11 @@ impl<'a> Checker<'a> {
     /// Opens a scope with these statements and checks them. [`Checker::close`] ends it.
     pub(super) fn open(&mut self, items: &[Item], place: Place, span: Span) -> Block {
         let scope = self.declare(items, place, span);
+        let item = |(name, &known): (&SmolStr, &usize)| (name.clone(), scope.known[known].item);
+        let declared = scope.names.iter().map(item);
+        // A loop without a body does not declare its variable for its own list.
         let declared: BTreeMap<SmolStr, usize> =
-            scope.names.iter().map(|(name, &known)| (name.clone(), scope.known[known].item)).collect();
+            declared.filter(|(_, item)| items[*item].name().is_some()).collect();
         let settings = if place == Place::Main { self.settings } else { &[] };
         let setting = |item: &Item| {
             let Item::Statement(ast::Statement { kind: Tree::Param { .. }, .. }) = item else { return None };
@@ -91,6 +94,9 @@ impl<'a> Checker<'a> {
             statements[index] = Some(statement);
         }
         // What lies on a cycle has no place in the order, and is already of invalid type.
+        for (item, _) in items.iter().zip(&statements).filter(|(_, found)| found.is_none()) {
+            self.quietly(|checker| checker.item(item, place, None));
+        }
         let missing = |item: &Item| {
             let span = match item {
                 Item::Statement(statement) => statement.span,

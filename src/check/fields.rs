@@ -1,13 +1,51 @@
-//! The fields of what may stand before `{`: of built-in kinds, of parts, and of what may be any of them.
+//! The fields of what may stand before `{`: of built-in kinds, of parts, and of what may be any of them; and what must
+//! hold between these.
 
 use super::notes::Meaning;
 use super::program::{FieldPlace, PartId};
-use super::types::{Kind, Type};
+use super::types::{FieldSet, Kind, Making, Type};
 use super::{Checker, errors};
-use crate::schema::{PLACED, familiar};
+use crate::diagnostic::Diagnostic;
+use crate::schema::{KindId, PLACED, Preset, Rule, familiar};
+use crate::span::Span;
 use crate::syntax::ast::{self, Entry, Name};
 
 impl Checker<'_> {
+    /// Fields that exclude each other. Reported where this body gives at least one of them.
+    pub(super) fn conflicts(&mut self, kind: KindId, given: FieldSet, places: &[Option<Span>]) {
+        let pair = |a: &'static str, b: &'static str| {
+            let (i, j) = (kind.field_index(a)?, kind.field_index(b)?);
+            let here = places[i].or(places[j])?;
+            (given.has(i) && given.has(j)).then_some((a, b, here, places[i].and(places[j])))
+        };
+        for rule in kind.get().rules {
+            let found = match rule {
+                Rule::ExactlyOne(names) => {
+                    names.iter().enumerate().find_map(|(n, a)| names[n + 1..].iter().find_map(|b| pair(a, b)))
+                }
+                Rule::Excludes(one, others) => others.iter().find_map(|other| pair(one, other)),
+                Rule::Together(_) | Rule::Needs(..) => None,
+            };
+            if let Some((a, b, first, second)) = found {
+                self.report(errors::conflict(kind, a, b, first, second));
+                return;
+            }
+        }
+    }
+
+    /// Everything that must be given is. `place` is where the thing is used.
+    pub(super) fn complete(&mut self, making: Making, place: Span) {
+        let Kind::BuiltIn(kind) = making.kind else { return };
+        for (index, field) in kind.fields().enumerate() {
+            if field.default == Preset::Required && !making.given.has(index) {
+                self.report(errors::missing(kind, field, place));
+            }
+        }
+        if let Some(diagnostic) = broken_rule(kind, making.given, place) {
+            self.report(diagnostic);
+        }
+    }
+
     /// The field of a kind with this name.
     pub(super) fn find_field(&self, kind: Kind, name: &str) -> Option<FieldPlace> {
         let placed = || PLACED.iter().position(|field| field.name == name).map(FieldPlace::Placed);
@@ -144,4 +182,36 @@ impl Checker<'_> {
         let (name, certain) = here.or_else(guess)?;
         Some((self.find_field(kind, name)?, certain))
     }
+}
+
+/// What a rule misses beside the fields that are given. What lacks one field may break several rules: the one
+/// that says most is said.
+fn broken_rule(kind: KindId, given: FieldSet, place: Span) -> Option<Diagnostic> {
+    let has = |name: &&str| kind.field_index(name).is_some_and(|index| given.has(index));
+    let rules = kind.get().rules;
+    let conflict = rules
+        .iter()
+        .any(|rule| matches!(rule, Rule::Excludes(one, others) if has(one) && others.iter().any(has)));
+    if conflict {
+        return None;
+    }
+    let beside = rules.iter().find_map(|rule| match rule {
+        Rule::Together(names) if names.iter().any(has) => {
+            let missing = names.iter().find(|name| !has(name))?;
+            Some(errors::missing_beside(kind, missing, names, place))
+        }
+        Rule::Needs(one, other) if has(one) && !has(other) => {
+            Some(errors::missing_beside(kind, other, &[one], place))
+        }
+        _ => None,
+    });
+    let one_of = || {
+        rules.iter().find_map(|rule| match rule {
+            Rule::ExactlyOne(names) if !names.iter().any(has) => {
+                Some(errors::missing_one_of(kind, names, place))
+            }
+            _ => None,
+        })
+    };
+    beside.or_else(one_of)
 }

@@ -1,4 +1,4 @@
-//! Things: their kind, their fields, and what must hold between these.
+//! Things: their kind, and their fields.
 
 use super::block::{path_span, path_text};
 use super::notes::{Meaning, word_of};
@@ -6,8 +6,8 @@ use super::program::{Around, Base, Expr, ExprKind, FieldPlace, Make, Written};
 use super::scope::{Item, Place, built_in};
 use super::types::{Element, FieldSet, Kind, Making, Type};
 use super::{Checker, errors};
-use crate::diagnostic::{Code, Diagnostic};
-use crate::schema::{self, Category, Field, FieldType, KindId, PLACED, Preset, Rule};
+use crate::diagnostic::Code;
+use crate::schema::{self, Category, Field, FieldType, KindId, PLACED, Preset};
 use crate::span::Span;
 use crate::syntax::ast::{self, Entry, ExprKind as Tree, Name, StatementKind as Statement};
 use crate::units;
@@ -19,7 +19,7 @@ impl Checker<'_> {
         self.nodes += 1;
         let (base, known) = self.kind_of(&construct.kind);
         let holds = known.is_some_and(|making| making.kind == Kind::BuiltIn(schema::group::KIND));
-        let Sorted { items, parts, misplaced } =
+        let Sorted { items, parts, misplaced, lost } =
             self.sort_entries(&construct.body.entries, known.map(|making| making.kind), holds);
         let place = if holds { Place::Group } else { Place::Fields };
         let mut block = (!items.is_empty()).then(|| self.open(&items, place, construct.body.span));
@@ -32,10 +32,8 @@ impl Checker<'_> {
             None => {
                 // The kind is unknown, yet what stands inside can be looked at.
                 for entry in &construct.body.entries {
-                    if let Entry::Field(field) = entry
-                        && !matches!(field.value.kind, Tree::Name(_))
-                    {
-                        self.infer(&field.value);
+                    if let Entry::Field(field) = entry {
+                        self.foreign_value(&field.value);
                     }
                 }
             }
@@ -43,9 +41,13 @@ impl Checker<'_> {
         for construct in misplaced {
             // One that is not known either is one slip.
             let name = &construct.kind.first.text;
-            if schema::kind(name).is_some() || self.lookup(name).is_some() {
-                self.make(construct, None);
-            }
+            match schema::kind(name).is_some() || self.lookup(name).is_some() {
+                true => self.make(construct, None),
+                false => self.quietly(|checker| checker.make(construct, None)),
+            };
+        }
+        for statement in lost {
+            self.quietly(|checker| checker.item(&Item::Statement(statement), place, None));
         }
         let inside = (block.is_some() && holds).then(|| self.keep_names());
         if block.is_some() {
@@ -66,6 +68,14 @@ impl Checker<'_> {
             rows: None,
         });
         (Make { base, fields: make.fields, block, inside, written }, ty)
+    }
+
+    /// The value of a field that is not known. A name may be a word that the field understands.
+    fn foreign_value(&mut self, value: &ast::Expr) {
+        match value.kind {
+            Tree::Name(_) => self.quietly(|checker| checker.infer(value)),
+            _ => self.infer(value),
+        };
     }
 
     /// What stands before `{`: what the thing begins as.
@@ -139,7 +149,7 @@ impl Checker<'_> {
     /// Splits the statements of a body: definitions and members on the one hand, things that are fields (a
     /// lens in its camera) on the other.
     fn sort_entries<'t>(&mut self, entries: &'t [Entry], kind: Option<Kind>, holds: bool) -> Sorted<'t> {
-        let Sorted { mut items, mut parts, mut misplaced } = Sorted::default();
+        let Sorted { mut items, mut parts, mut misplaced, mut lost } = Sorted::default();
         for entry in entries {
             let Entry::Statement(statement) = entry else {
                 // A broken entry with the name of a field is that field.
@@ -158,7 +168,9 @@ impl Checker<'_> {
                         _ => None,
                     };
                     let field = built_in.and_then(|kind| self.part_field(kind, &construct.kind));
+                    let is_off = field.is_some() && self.prefixes(statement).0;
                     match (kind, field, name) {
+                        (_, Some(_), None) if is_off => misplaced.push(construct),
                         (_, Some(index), None) => parts.push((index, construct)),
                         (Some(kind), Some(index), Some(name)) => {
                             self.report(errors::named_part(&construct.kind, name, &self.kind_name(kind)));
@@ -169,7 +181,7 @@ impl Checker<'_> {
                             self.report(errors::cannot_hold(&construct.kind, &name, category));
                             misplaced.push(construct);
                         }
-                        (None, ..) => {}
+                        (None, ..) => lost.push(statement),
                     }
                 }
                 Statement::For { .. } | Statement::If { .. } | Statement::Assert { .. } if !holds => {
@@ -177,11 +189,12 @@ impl Checker<'_> {
                         let name = self.kind_name(kind);
                         self.report(errors::cannot_hold_statement(statement.span, &name));
                     }
+                    lost.push(statement);
                 }
                 _ => items.push(Item::Statement(statement)),
             }
         }
-        Sorted { items, parts, misplaced }
+        Sorted { items, parts, misplaced, lost }
     }
 
     /// The field of `kind` that a statement of this kind, or of a prototype of it, inside fills.
@@ -232,9 +245,8 @@ impl Checker<'_> {
                 }
                 match (meant, value) {
                     (Some(field), Some(value)) => drop(self.value_of_field(kind, field, value)),
-                    // A name may be a word that the field understands.
-                    (None, Some(value)) if !matches!(value.kind, Tree::Name(_)) => drop(self.infer(value)),
-                    _ => {}
+                    (None, Some(value)) => self.foreign_value(value),
+                    (_, None) => {}
                 }
                 continue;
             };
@@ -258,6 +270,7 @@ impl Checker<'_> {
             let name = &construct.kind.first;
             if let Some(first) = places[*index] {
                 self.report(errors::repeated(name, first));
+                self.quietly(|checker| checker.make(construct, None));
                 continue;
             }
             places[*index] = Some(name.span);
@@ -320,41 +333,6 @@ impl Checker<'_> {
             }
             (_, FieldPlace::Placed(index)) => self.field_value(&PLACED[index], value),
             _ => Expr::invalid(value.span),
-        }
-    }
-
-    /// Fields that exclude each other. Reported where this body gives at least one of them.
-    fn conflicts(&mut self, kind: KindId, given: FieldSet, places: &[Option<Span>]) {
-        let pair = |a: &'static str, b: &'static str| {
-            let (i, j) = (kind.field_index(a)?, kind.field_index(b)?);
-            let here = places[i].or(places[j])?;
-            (given.has(i) && given.has(j)).then_some((a, b, here, places[i].and(places[j])))
-        };
-        for rule in kind.get().rules {
-            let found = match rule {
-                Rule::ExactlyOne(names) => {
-                    names.iter().enumerate().find_map(|(n, a)| names[n + 1..].iter().find_map(|b| pair(a, b)))
-                }
-                Rule::Excludes(one, others) => others.iter().find_map(|other| pair(one, other)),
-                Rule::Together(_) | Rule::Needs(..) => None,
-            };
-            if let Some((a, b, first, second)) = found {
-                self.report(errors::conflict(kind, a, b, first, second));
-                return;
-            }
-        }
-    }
-
-    /// Everything that must be given is. `place` is where the thing is used.
-    pub(super) fn complete(&mut self, making: Making, place: Span) {
-        let Kind::BuiltIn(kind) = making.kind else { return };
-        for (index, field) in kind.fields().enumerate() {
-            if field.default == Preset::Required && !making.given.has(index) {
-                self.report(errors::missing(kind, field, place));
-            }
-        }
-        if let Some(diagnostic) = broken_rule(kind, making.given, place) {
-            self.report(diagnostic);
         }
     }
 
@@ -421,40 +399,10 @@ struct Sorted<'t> {
     items: Vec<Item<'t>>,
     /// Things that are fields, each with the field's index.
     parts: Vec<(usize, &'t ast::Construct)>,
-    /// Things that do not belong here, which was reported.
+    /// Things that are left out, or do not belong here, which was reported.
     misplaced: Vec<&'t ast::Construct>,
-}
-
-/// What a rule misses beside the fields that are given. What lacks one field may break several rules: the one
-/// that says most is said.
-fn broken_rule(kind: KindId, given: FieldSet, place: Span) -> Option<Diagnostic> {
-    let has = |name: &&str| kind.field_index(name).is_some_and(|index| given.has(index));
-    let rules = kind.get().rules;
-    let conflict = rules
-        .iter()
-        .any(|rule| matches!(rule, Rule::Excludes(one, others) if has(one) && others.iter().any(has)));
-    if conflict {
-        return None;
-    }
-    let beside = rules.iter().find_map(|rule| match rule {
-        Rule::Together(names) if names.iter().any(has) => {
-            let missing = names.iter().find(|name| !has(name))?;
-            Some(errors::missing_beside(kind, missing, names, place))
-        }
-        Rule::Needs(one, other) if has(one) && !has(other) => {
-            Some(errors::missing_beside(kind, other, &[one], place))
-        }
-        _ => None,
-    });
-    let one_of = || {
-        rules.iter().find_map(|rule| match rule {
-            Rule::ExactlyOne(names) if !names.iter().any(has) => {
-                Some(errors::missing_one_of(kind, names, place))
-            }
-            _ => None,
-        })
-    };
-    beside.or_else(one_of)
+    /// Statements of which it is not known whether they belong here, or that do not.
+    lost: Vec<&'t ast::Statement>,
 }
 
 /// Whether a value of a type can stand in a field.

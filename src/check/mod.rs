@@ -183,6 +183,16 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// Checks what means nothing where it stands, for the names that are used in it. What is wrong there is not said.
+    fn quietly<T>(&mut self, check: impl FnOnce(&mut Self) -> T) -> T {
+        let (reported, lost, allows) = (self.diagnostics.len(), self.lost.len(), self.program.allows.len());
+        let found = check(self);
+        self.diagnostics.truncate(reported);
+        self.lost.truncate(lost);
+        self.program.allows.truncate(allows);
+        found
+    }
+
     /// The source text of a span.
     fn text(&self, span: Span) -> &'a str {
         self.sources.text(span)
@@ -211,12 +221,9 @@ impl<'a> Checker<'a> {
 
     /// The type of an expression where only what is built in is known; what is wrong with it is not reported.
     fn type_alone(&mut self, value: &ast::Expr) -> Option<Type> {
-        let reported = self.diagnostics.len();
         self.begin_frame();
-        let (_, ty) = self.infer(value);
+        let (_, ty) = self.quietly(|checker| checker.infer(value));
         self.end_frame();
-        self.diagnostics.truncate(reported);
-        self.lost.retain(|(index, _)| *index < reported);
         (ty != Type::Invalid).then_some(ty)
     }
 }

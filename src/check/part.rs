@@ -40,6 +40,7 @@ impl<'a> Checker<'a> {
     ) -> (StatementKind, Type) {
         if !matches!(place, Place::Main | Place::Imported | Place::Part) {
             self.report(errors::not_here("part", name, "a file or another part"));
+            self.quietly(|checker| checker.part(name, body, statement, Place::Part));
             return (StatementKind::Nothing, Type::Invalid);
         }
         let (items, fields) = apart(&body.entries);
@@ -120,6 +121,8 @@ impl<'a> Checker<'a> {
         range: Option<&ast::Expr>,
         place: Place,
     ) -> (StatementKind, Type) {
+        // Statements inside the default have their own.
+        let doc = self.doc.take();
         if PLACED.iter().any(|field| name.text == field.name) && !syntax::RESERVED.contains(&&*name.text) {
             self.report(errors::param_hides_field(name));
         }
@@ -145,7 +148,6 @@ impl<'a> Checker<'a> {
         }
         // Of a type that its default does not have, which of the two was meant is not known.
         let ty = if fits { declared.ty() } else { Type::Invalid };
-        let doc = self.doc.take();
         let default = self.text(default.span).into();
         let scope = self.current();
         let Some(known) = scope.names.get(&name.text).map(|&known| &scope.known[known]) else {
@@ -263,6 +265,7 @@ impl<'a> Checker<'a> {
     ) -> (StatementKind, Type) {
         if !matches!(place, Place::Main | Place::Imported | Place::Part) {
             self.report(errors::not_here("fn", name, "a file or a part"));
+            self.quietly(|checker| checker.function(name, parameters, result, value, statement, Place::Part));
             return (StatementKind::Nothing, Type::Invalid);
         }
         let before = self.nodes;

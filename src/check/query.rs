@@ -129,13 +129,13 @@ impl Checker<'_> {
         match &ty {
             Type::Invalid => INVALID,
             Type::File(file) => match self.exported(*file, &member.text) {
-                Some(name) if matches!(name.ty, Type::Thing(_)) => {
-                    self.report(errors::thing_of_file(member));
-                    INVALID
-                }
                 Some(name) => {
                     let (name, meaning) = (name.clone(), Meaning::Declared(name.place));
                     self.note(member.span, Some(meaning));
+                    if matches!(name.ty, Type::Thing(_)) {
+                        self.report(errors::thing_of_file(member));
+                        return INVALID;
+                    }
                     (ExprKind::FileName { file: *file, slot: name.slot }, name.ty)
                 }
                 None => {
@@ -195,14 +195,15 @@ impl Checker<'_> {
             _ => making.inside,
         };
         let found = inside.and_then(|inside| self.program.insides[inside.index()].names.get(&member.text));
-        if let Some(name) = found.filter(|_| drawn).cloned() {
+        let found = found.cloned();
+        self.note(member.span, found.as_ref().map(|name| Meaning::Declared(name.place)));
+        if let Some(name) = found.clone().filter(|_| drawn) {
             let reaches = !matches!(&name.ty, Type::Part(_) | Type::File(_) | Type::Function(_))
                 && !matches!(&name.ty, Type::Made(Making { kind: Kind::Part(_) | Kind::Thing, .. }));
             if !reaches {
                 self.report(errors::hidden_inside(member, &name.ty));
                 return INVALID;
             }
-            self.note(member.span, Some(Meaning::Declared(name.place)));
             return (ExprKind::Inside { value: Box::new(value), slot: name.slot }, name.ty);
         }
         if found.is_some() {

@@ -48,10 +48,11 @@ impl Checker<'_> {
         let Tree::Thing { construct, .. } = &shape.statement().kind else { return None };
         let said = self.diagnostics.len();
         self.shape = Some(shape.clone());
-        let (drawn, ty) = self.drawn(construct, None, None);
+        let (drawn, ty, silent) = self.quietly(|checker| {
+            let (drawn, ty) = checker.drawn(construct, None, None);
+            (drawn, ty, checker.diagnostics.len() == said)
+        });
         self.shape = None;
-        let silent = self.diagnostics.len() == said;
-        self.diagnostics.truncate(said);
         let (StatementKind::Draw { make, .. }, Type::Thing(making)) = (drawn, ty) else { return None };
         let single = matches!(making.kind, Kind::BuiltIn(kind)
             if kind != group::KIND && kind.get().category != Category::Block);

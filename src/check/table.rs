@@ -16,6 +16,9 @@ impl Checker<'_> {
         let invalid = (ExprKind::Invalid, Type::Invalid);
         let [Argument { name: None, value }] = arguments else {
             self.report(errors::table_arguments(span));
+            arguments
+                .iter()
+                .for_each(|argument| drop(self.quietly(|checker| checker.infer(&argument.value))));
             return invalid;
         };
         let Tree::Text(text) = &value.kind else {

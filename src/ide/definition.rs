@@ -11,7 +11,7 @@ pub(super) fn definition(analysis: &Analysis, at: usize) -> Option<Definition> {
     if let Some((from, path)) = analysis.path_at(at) {
         return file(analysis, from, &path);
     }
-    let (from, Meaning::Declared(name)) = analysis.named(at)? else { return None };
+    let (from, name) = declaration(analysis, at)?;
     if from == name
         && let Some(Type::File(_)) = analysis.study.notes.declared(name)
         && let Some(path) = analysis.import_path(name)
@@ -20,6 +20,14 @@ pub(super) fn definition(analysis: &Analysis, at: usize) -> Option<Definition> {
     }
     let whole = statement_of(analysis, name).unwrap_or(name);
     Some(Definition { from, name, whole })
+}
+
+/// What is named at a byte, and the name that declares it.
+pub(super) fn declaration(analysis: &Analysis, at: usize) -> Option<(Span, Span)> {
+    match analysis.named(at)? {
+        (from, Meaning::Declared(name)) => Some((from, name)),
+        _ => None,
+    }
 }
 
 /// The beginning of a file of the language.

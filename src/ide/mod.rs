@@ -122,6 +122,12 @@ impl Analysis {
         definition::definition(self, at)
     }
 
+    /// The name that declares what is named at a byte, which is what [`references`] and [`rename()`] look for. None of what is
+    /// built in.
+    pub fn declaration(&self, at: usize) -> Option<Span> {
+        definition::declaration(self, at).map(|(_, name)| name)
+    }
+
     /// The name at a byte, if it can be renamed; else a sentence that says why not. None where no name stands.
     pub fn renamable(&self, at: usize) -> Option<Result<Span, String>> {
         rename::renamable(self, at)

@@ -1,13 +1,14 @@
 //! Who uses a name, and giving it another.
 
+use super::walk::Piece;
 use super::{Analysis, Edit, Location};
-use crate::check::{Function, Home, Meaning, Type};
-use crate::diagnostic::Severity;
+use crate::check::{Function, Home, Meaning, Visible};
+use crate::diagnostic::{Severity, any_errors};
 use crate::schema::{self, FieldType, KINDS, PLACED};
 use crate::span::Span;
+use crate::syntax::ast::{Construct, Expr, ExprKind};
 use crate::syntax::{self, RESERVED};
 use crate::{color, units};
-use smol_str::SmolStr;
 use std::collections::BTreeSet;
 
 /// The name at a byte, if it can be renamed; else why it cannot.
@@ -70,6 +71,7 @@ pub fn rename(all: &[&Analysis], of: &Analysis, at: usize, name: &str) -> Result
     for analysis in all.iter().copied().chain([of]) {
         let Some(place) = place_in(analysis, &declared) else { continue };
         readable(analysis)?;
+        understood(analysis, place)?;
         let places = uses_of(analysis, &declared, true);
         free(analysis, place, &places, name)?;
         edits.extend(places.into_iter().map(|at| Edit { at, text: name.to_string() }));
@@ -120,20 +122,71 @@ fn readable(analysis: &Analysis) -> Result<(), String> {
     }
 }
 
+/// What was not understood may mean what is declared at a place, where it has its name.
+fn understood(analysis: &Analysis, place: Span) -> Result<(), String> {
+    if !any_errors(&analysis.diagnostics) {
+        return Ok(());
+    }
+    let name = analysis.sources.text(place);
+    let home = analysis.home(place);
+    let by_path = home.is_some_and(|home| matches!(home.place, Home::Part | Home::Group | Home::File));
+    let mut found = None;
+    let mut look = |span: Span, is_path: bool| {
+        let reaches = if is_path { by_path } else { home.is_some_and(|home| home.span.contains(span)) };
+        if reaches && analysis.sources.text(span) == name && analysis.meaning(span).is_none() {
+            found.get_or_insert(span);
+        }
+    };
+    for (id, source) in analysis.files() {
+        analysis.walk(id, 0..source.text.len(), &mut |piece| match piece {
+            Piece::Field(field) => look(field.name.span, true),
+            Piece::Construct(Construct { kind: path, .. })
+            | Piece::Expr(Expr { kind: ExprKind::Call { function: path, .. }, .. }) => {
+                look(path.first.span, false);
+                path.rest.iter().for_each(|inner| look(inner.span, true));
+            }
+            Piece::Expr(Expr { kind: ExprKind::Name(_), span }) => look(*span, false),
+            Piece::Expr(Expr { kind: ExprKind::Member { member, .. }, .. }) => look(member.span, true),
+            _ => {}
+        });
+    }
+    match found {
+        Some(span) => {
+            let (file, line) = analysis.line_of(span);
+            Err(format!("what `{name}` means at {file}, line {line} is not known; mend that first"))
+        }
+        None => Ok(()),
+    }
+}
+
+impl Analysis {
+    /// The scope that declares the name at a place.
+    fn home(&self, place: Span) -> Option<&Visible> {
+        let declares = |scope: &&Visible| scope.names.iter().any(|(_, span, _)| *span == place);
+        self.study.notes.scopes.iter().find(declares)
+    }
+
+    /// A place for who reads of it: its file, and its line.
+    fn line_of(&self, span: Span) -> (&str, usize) {
+        (&self.sources.get(span.source).name, self.sources.place_of(span).start.line)
+    }
+}
+
 /// Whether a name means nothing yet wherever it would be written or seen.
 fn free(analysis: &Analysis, place: Span, uses: &[Location], name: &str) -> Result<(), String> {
-    let line = |span: Span| analysis.sources.place_of(span).start.line;
-    let file = |span: Span| analysis.sources.get(span.source).name.clone();
+    let taken = |what: &str, span: Span| {
+        let (file, line) = analysis.line_of(span);
+        Err(format!("`{name}` is {what} at {file}, line {line}"))
+    };
     let scopes = &analysis.study.notes.scopes;
-    let declares = |names: &[(SmolStr, Span, Type)], at: Span| names.iter().any(|(_, span, _)| *span == at);
-    let home = scopes.iter().find(|scope| declares(&scope.names, place));
+    let home = analysis.home(place);
     // Names hide nothing: neither around the declaration nor inside may there be another one.
     for scope in scopes {
         let related =
             home.is_some_and(|home| home.span.contains(scope.span) || scope.span.contains(home.span));
         let other = scope.names.iter().find(|(known, span, _)| known == name && *span != place);
         if let Some((_, span, _)) = other.filter(|_| related) {
-            return Err(format!("`{name}` is declared at {}, line {}", file(*span), line(*span)));
+            return taken("declared", *span);
         }
     }
     // A field of what holds the name is asked for in the same way.
@@ -146,11 +199,7 @@ fn free(analysis: &Analysis, place: Span, uses: &[Location], name: &str) -> Resu
             matches!(meaning, Meaning::Color(_)) && analysis.sources.text(*span) == name
         });
         if let Some((span, _)) = colour {
-            return Err(format!(
-                "`{name}` is used as the built-in colour at {}, line {}",
-                file(*span),
-                line(*span)
-            ));
+            return taken("used as the built-in colour", *span);
         }
     }
     // Where it is used, another thing of this name may be seen: it stands in a scope of that place.
@@ -168,7 +217,7 @@ fn free(analysis: &Analysis, place: Span, uses: &[Location], name: &str) -> Resu
             continue;
         }
         if let Some((_, span)) = others.iter().find(|(scope, _)| scope.contains(used)) {
-            return Err(format!("`{name}` is declared at {}, line {}", file(*span), line(*span)));
+            return taken("declared", *span);
         }
     }
     Ok(())

@@ -5,6 +5,9 @@ use super::lex::{Lexeme, lex};
 use super::walk::{Piece, whole};
 use crate::span::Span;
 
+/// The most ranges around a place, in two halves.
+const MOST: usize = 100;
+
 /// The ranges around a byte that are units of the language, innermost first: the word, the expressions and bodies around it, the
 /// file.
 pub(super) fn selection(analysis: &Analysis, at: usize) -> Vec<Span> {
@@ -41,6 +44,10 @@ pub(super) fn selection(analysis: &Analysis, at: usize) -> Vec<Span> {
         if nested.last().is_none_or(|last| *last != span && span.contains(*last)) {
             nested.push(span);
         }
+    }
+    // The innermost and the outermost: clients read a chain of them as deep as it is.
+    if nested.len() > MOST {
+        nested.drain(MOST / 2..nested.len() - MOST / 2);
     }
     nested
 }

@@ -7,7 +7,7 @@ use super::ast::{
 use super::cut::Item;
 use super::errors::{self, Held, Sink, statements};
 use super::slips::{ends_invalid, spoil};
-use super::{docs, statement, value};
+use super::{BLANKS, docs, statement, value};
 use crate::span::{SourceId, Span};
 use pest::iterators::{Pair, Pairs};
 use smol_str::SmolStr;
@@ -483,7 +483,12 @@ impl<'t> Builder<'t> {
         let (value, depth) = self.expression(inner);
         if matches!(sign.as_str(), ":" | ":=" | "==") {
             let place = self.span(&sign);
-            let edit = self.at(name.span.range().end - self.base, sign.as_span().end());
+            // `let r: length 5cm`: what stands before the value is a type.
+            let behind = self.after(value.span.range().end - self.base).trim_start_matches(BLANKS);
+            let is_type = matches!(value.kind, ExprKind::Name(_))
+                && behind.starts_with(|c: char| c.is_alphanumeric() || "#.\"".contains(c));
+            let end = if is_type { value.span.range().end - self.base } else { sign.as_span().end() };
+            let edit = self.at(name.span.range().end - self.base, end);
             self.report(errors::colon_in_definition(keyword.as_str(), &name.text, place, edit));
         } else if let Some(ty) = sign.clone().into_inner().next() {
             let edit = self.at(name.span.range().end - self.base, ty.as_span().end());

@@ -422,12 +422,12 @@ fn semicolons(places: &[(Span, &'static str)]) -> Option<Diagnostic> {
     let mut places = places.to_vec();
     places.sort_unstable();
     let first = places.first()?.0;
-    // Those that touch, as in `;;`, are one edit: the last tells what should stand there.
+    // Those that touch, as in `;;`, are one edit, with a comma where one of them wants it.
     let mut edits: Vec<(Span, &str)> = Vec::new();
     for &(place, replacement) in &places {
         match edits.last_mut() {
             Some((last, with)) if last.source == place.source && last.end == place.start => {
-                (last.end, *with) = (place.end, replacement);
+                (last.end, *with) = (place.end, [*with, replacement].into_iter().max().unwrap_or(""));
             }
             _ => edits.push((place, replacement)),
         }
@@ -474,7 +474,7 @@ pub(super) fn missing_colon(name: &str, span: Span, value: Span) -> Diagnostic {
 pub(super) fn angle_brackets(span: Span, open: Span, close: Span) -> Diagnostic {
     Diagnostic::new(Code::E0006, "angle brackets do not hold values", span)
         .at("parentheses are wanted")
-        .help("write `(x, y, z)`, with the unit behind it: `(0, 1, 0)m`")
+        .help("write `(x, y, z)`; that of lengths has its unit behind it: `(0, 1, 0)m`")
         .fix(open, "(")
         .fix(close, ")")
 }

@@ -376,7 +376,8 @@ impl<'t> Builder<'t> {
 
     /// `;` where a comma or nothing should stand.
     pub(super) fn semicolon(&self, pair: &Node) {
-        let rest = self.after(pair.as_span().end()).trim_start_matches(BLANKS);
+        // What stands behind all of them, as in `;;`, counts.
+        let rest = self.after(pair.as_span().end()).trim_start_matches(|c| c == ';' || BLANKS.contains(&c));
         let ends = if rest.is_empty() { !self.continued() } else { rest.starts_with(['\n', '}', ',', ')']) };
         let replacement = if ends { "" } else { "," };
         self.sink.borrow_mut().push_semicolon(self.span(pair), replacement);

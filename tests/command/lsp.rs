@@ -4,6 +4,7 @@ mod answers;
 mod client;
 mod disk;
 mod edits;
+mod names;
 mod page;
 mod preview;
 mod robust;

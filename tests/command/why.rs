@@ -382,4 +382,16 @@ render { size: (16, 12), samples: 4, bounces: 2 }
     );
     let allowed = desk.run("build allowed.rt --feedback");
     assert!(!allowed.stderr.contains("W0705"), "{}", allowed.stderr);
+    // Why it gives nothing was said before.
+    let sealed = |before: &str| {
+        format!(
+            "plane {{}}\nlight {{ at: (0, 3, 0)m, power: 9W }}\nsphere {{ at: (3, 1, 0)m, radius: 50cm }}\n{before}light {{ at: (3, 1, 0)m, power: 60W }}\nrender {{ size: (8, 8), samples: 64, bounces: 1 }}\n"
+        )
+    };
+    desk.put("sealed.rt", &sealed(""));
+    let told = desk.run("build sealed.rt --feedback").stderr;
+    assert!(told.contains("W0604") && !told.contains("W0705"), "{told}");
+    desk.put("sealed.rt", &sealed("@allow(W0604, \"lit from outside today\")\n"));
+    let told = desk.run("build sealed.rt --feedback").stderr;
+    assert!(!told.contains("W0604") && !told.contains("W0705"), "{told}");
 }

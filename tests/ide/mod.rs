@@ -3,6 +3,7 @@
 //! `$hover$` in a text stands for the cursor and names what is asked there; it is taken out before the text is read.
 //! `$rename:NAME$` asks for the edits of a renaming. A first line `// ask: symbols, tokens` asks of the whole file.
 
+mod allowed;
 mod any;
 mod large;
 mod rename;
@@ -25,9 +26,13 @@ fn root() -> Folder {
 /// What a text means among the files of a folder.
 fn analysed(files: &Folder, name: &str, text: &str) -> Analysis {
     let source = Source::new(name, text).at(FilePath::root(name));
+    analyse(files, source, &options(), &|| false).unwrap()
+}
+
+/// What an editor asks for.
+fn options() -> Options {
     let overrides = Overrides { every_camera: true, ..Overrides::default() };
-    let options = Options { overrides, ..Options::default() };
-    analyse(files, source, &options, &|| false).unwrap()
+    Options { overrides, ..Options::default() }
 }
 
 /// A text without its marks, and these: where each stands, and what it asks.

@@ -2,7 +2,7 @@
 
 use crate::folder::Folder;
 use rt_lang::files::{FileError, FilePath, Files};
-use rt_lang::ide::{self, Edit};
+use rt_lang::ide::{self, Edit, TokenKind};
 use rt_lang::source::{Source, Sources};
 use rt_lang::{Options, analyse, compile};
 use std::collections::{BTreeMap, BTreeSet};
@@ -126,4 +126,47 @@ fn a_renamed_scene_is_the_same() {
         }
     }
     assert!(renamed > 60, "{renamed} names were changed");
+}
+
+/// What is not understood uses names all the same: of a file that is not there, of a kind that nobody knows.
+#[test]
+fn a_scene_that_is_mended_later_is_the_same() {
+    let (mut refused, mut renamed) = (0, 0);
+    for path in scenes() {
+        let folder = Folder::of(&path);
+        let (text, _) = super::marks(&std::fs::read_to_string(&path).unwrap());
+        let name = FilePath::root(path.file_name().unwrap().to_str().unwrap());
+        let before = meaning(&folder, &name, &text);
+        if before.0.is_none() {
+            continue;
+        }
+        let source = |text: &str| Source::new("main.rt", text).at(name.clone());
+        let analysis = analyse(&folder, source(&text), &Options::default(), &|| false).unwrap();
+        let kinds = analysis.tokens(0..text.len(), &|| false).into_iter();
+        let kinds = kinds.filter(|token| token.kind == TokenKind::Kind).map(|token| token.span.range());
+        let files = text.match_indices("import \"").map(|(at, found)| at + found.len()..at + found.len());
+        for (index, slip) in kinds.chain(files).enumerate() {
+            let mut broken = text.clone();
+            broken.replace_range(slip.clone(), "never_heard_of");
+            let source = source(&broken);
+            let analysis = analyse(&folder, source.clone(), &Options::default(), &|| false).unwrap();
+            let names = analysis.tokens(0..broken.len(), &|| false).into_iter();
+            let names: Vec<usize> =
+                names.filter(|token| token.declaration).map(|token| token.span.range().start).collect();
+            let Some(at) = names.get(index % names.len().max(1)) else { continue };
+            match ide::rename(&[], &analysis, *at, "another_name") {
+                Err(_) => refused += 1,
+                Ok(edits) => {
+                    let mut texts = apply(&folder, &source, &edits);
+                    let mended = texts[&name].replace("never_heard_of", &text[slip.clone()]);
+                    texts.insert(name.clone(), mended);
+                    let edited = Edited { folder: &folder, texts };
+                    let after = meaning(&edited, &name, &edited.texts[&name]);
+                    assert_eq!(after, before, "{} {slip:?}: {edits:?}", path.display());
+                    renamed += 1;
+                }
+            }
+        }
+    }
+    assert!(renamed > 10 * refused, "{refused} were refused, {renamed} made");
 }

@@ -26,7 +26,7 @@ type Outcome = Result<(), String>;
 /// Does one thing in its place.
 type Step = fn(&Place) -> Outcome;
 
-/// The steps of `e2e`, in order. All but [`ARM`] are run where none is named.
+/// The steps of `e2e`, in order. All but those of [`NAMED`] are run where none is named.
 const STEPS: &[(&str, Step)] = &[
     ("terminal", terminal),
     ("full-disk", full_disk),
@@ -39,13 +39,14 @@ const STEPS: &[(&str, Step)] = &[
     ("preview", preview::checks),
     ("mattes", mattes),
     ("editors", editors::checks),
+    ("newer-editors", editors::newer),
     ("processors", processors::same_bits),
-    (ARM, processors::same_bits_on_arm),
+    ("arm", processors::same_bits_on_arm),
     ("readme", readme::commands),
 ];
 
-/// It needs a part of Rust that no distribution has.
-const ARM: &str = "arm";
+/// One needs a part of Rust that no distribution has, the other a Debian that changes from day to day.
+const NAMED: [&str; 2] = ["arm", "newer-editors"];
 
 const USAGE: &str = "\
 cargo xtask gallery
@@ -94,8 +95,9 @@ cargo xtask e2e [STEP…]
   mattes     Cryptomatte by an independent reader (from PyPI)
   editors    the packages for editors, in Neovim (from PyPI), Vim, Emacs (vim, emacs-nox and elpa-eglot, of Debian) and as
              what Visual Studio Code is given (node and npm); pictures of them, and a preview, in chromium, of Debian
+  newer-editors the same in Emacs 30 with tree-sitter, and Helix (of Debian's next release, unpacked; only where it is named)
   processors the same bytes on other x86-64 processors, by emulation (qemu-user)
-  arm        the same on an ARM with NEON (gcc-aarch64-linux-gnu, and rustup for its standard library)
+  arm        the same on an ARM with NEON (gcc-aarch64-linux-gnu, and rustup for its standard library; only where it is named)
   readme     every command of the README, in a fresh clone of HEAD
 
 Without STEP all but arm are run. Needs python3, bash, git and, for full-disk, leave to mount a tmpfs. What else a step needs
@@ -142,7 +144,7 @@ fn e2e(wanted: &[String]) -> Outcome {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
     let mut failed = vec![];
     let is_wanted = |name: &str| match wanted {
-        [] => name != ARM,
+        [] => !NAMED.contains(&name),
         wanted => wanted.iter().any(|w| w == name),
     };
     for (name, step) in STEPS.iter().filter(|(name, _)| is_wanted(name)) {

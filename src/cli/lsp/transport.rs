@@ -15,6 +15,9 @@ use std::thread::Builder;
 /// Messages that wait in one direction.
 const QUEUE: usize = 256;
 
+/// How much stack writes an answer: those of selections lie deep in each other.
+const STACK: usize = 8 << 20;
+
 /// What writes. It ends once the connection is gone and all that was sent is written.
 pub struct Writer {
     ended: Receiver<()>,
@@ -42,7 +45,7 @@ pub fn start(interrupt: &Interrupt) -> io::Result<(Connection, Writer)> {
         read_all(read);
         end_soon(&interrupt)
     })?;
-    Builder::new().name("write".into()).spawn(move || {
+    Builder::new().name("write".into()).stack_size(STACK).spawn(move || {
         write_all(&written);
         drop(ends);
     })?;

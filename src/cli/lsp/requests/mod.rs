@@ -89,7 +89,7 @@ pub fn find(method: &str) -> Option<(Lane, Run)> {
             (Meaning, |asked, params| run::<lsp::DocumentColorRequest>(asked, params, colours::colours))
         }
         Method::TextDocumentColorPresentation => {
-            (Text, |asked, params| run::<lsp::ColorPresentationRequest>(asked, params, colours::present))
+            (Meaning, |asked, params| run::<lsp::ColorPresentationRequest>(asked, params, colours::present))
         }
         Method::TextDocumentInlayHint => {
             (Meaning, |asked, params| run::<lsp::InlayHintRequest>(asked, params, hints::hints))

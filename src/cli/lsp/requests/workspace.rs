@@ -101,11 +101,11 @@ impl Users {
 /// Who uses what is declared that stands at a byte of a document, or else the document itself.
 pub fn users(asked: &mut Asked, meaning: &Arc<Meaning>, at: usize) -> Answer<Users> {
     let own = meaning.key(meaning.analysis.main);
-    let declared = meaning.analysis.definition(at).map(|found| found.name);
-    let name = declared.map_or("", |name| meaning.analysis.sources.text(name)).to_string();
-    let home = declared.map_or_else(|| own.clone(), |name| meaning.key(name.source));
     let mut users = Users { own: meaning.clone(), others: vec![], complete: true };
-    let Some(file) = own.path() else { return Ok(users) };
+    // What is declared nowhere is looked for in the document alone.
+    let Some((file, declared)) = own.path().zip(meaning.analysis.declaration(at)) else { return Ok(users) };
+    let name = meaning.analysis.sources.text(declared).to_string();
+    let home = meaning.key(declared.source);
     let mut readers = open_readers(asked, &own, &home)?;
     let view = together(asked.view, readers.iter().map(|(key, _)| key).chain([&own]));
     let (base, whole) = view.base(file);
@@ -121,8 +121,8 @@ pub fn users(asked: &mut Asked, meaning: &Arc<Meaning>, at: usize) -> Answer<Use
     let (saved, all) = around(home.path().unwrap_or(file), &base, whole);
     users.complete &= all;
     for key in saved.into_iter().map(Key::File).filter(|key| view.documents.get(key).is_none()) {
-        if asked.is_cancelled() {
-            return Err(Failure::cancelled());
+        if let Some(failure) = asked.view.documents.get(&own).and_then(|document| asked.spoilt(document)) {
+            return Err(failure);
         }
         let found = find_saved(asked, &view, &key, &home, &name);
         users.others.extend(found.filter(|found| key == home || found.reads.contains(&home)));
