@@ -3,7 +3,7 @@
 use super::args::Info;
 use super::files::Asked;
 use super::scene::{self, Loaded};
-use super::target::print;
+use super::target::{print_text, print_words};
 use super::terminal::Terminal;
 use super::{Exit, Problem};
 use rt_lang::files::FileError;
@@ -23,8 +23,10 @@ pub fn run(arguments: &Info, terminal: Terminal) -> Result<Exit, Problem> {
     let loaded = scene::load(&arguments.scene, &arguments.reading, &overrides)?;
     terminal.diagnostics(&loaded.compiled.diagnostics, &loaded.sources);
     let Some(scene) = &loaded.compiled.scene else { return Ok(Exit::Diagnostics) };
-    let text = if arguments.json { format!("{}\n", object(&loaded, scene)) } else { words(&loaded, scene) };
-    print(text.as_bytes())?;
+    match arguments.json {
+        true => print_text(&format!("{}\n", object(&loaded, scene)))?,
+        false => print_words(&words(&loaded, scene))?,
+    }
     Ok(Exit::Done)
 }
 

@@ -5,8 +5,9 @@ use super::input::is_standard;
 use super::interrupt::Interrupt;
 use super::{Problem, claim, plain};
 use rt_lang::output::Format;
+use rt_lang::report::printable_lines;
 use std::fs;
-use std::io::{self, ErrorKind, IsTerminal, Write, stdout};
+use std::io::{self, ErrorKind, IsTerminal, Read, Write, stdout};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
@@ -175,10 +176,20 @@ impl Drop for Aside {
     }
 }
 
-/// Writes to standard output.
-pub fn print(bytes: &[u8]) -> Result<(), Problem> {
+/// Writes to standard output what people read. What of it comes from a file steers no terminal, whatever it passes on its way.
+pub fn print_words(text: &str) -> Result<(), Problem> {
+    print(printable_lines(text).as_bytes())
+}
+
+/// Writes a text to standard output: as it is for a program, and for a terminal so that it does not steer it.
+pub fn print_text(text: &str) -> Result<(), Problem> {
+    if stdout().is_terminal() { print_words(text) } else { print(text.as_bytes()) }
+}
+
+/// Writes all there is to standard output, byte by byte as it is.
+pub fn print(mut from: impl Read) -> Result<(), Problem> {
     let mut stdout = stdout().lock();
-    let written = stdout.write_all(bytes).and_then(|()| stdout.flush());
+    let written = io::copy(&mut from, &mut stdout).and_then(|_| stdout.flush());
     written.map_err(|error| cannot_write("standard output", &error))
 }
 
