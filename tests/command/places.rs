@@ -150,7 +150,7 @@ mod on_unix {
         as_anybody(&desk, &format!("{arguments} --resume=never")).expect(0, &[]);
         assert_eq!((mode(&desk, "a.png"), mode(&desk, "a.png.checkpoint")), (0o444, 0o444));
         desk.put(".a.png.tmp", "left");
-        fs::set_permissions(desk.path(".a.png.tmp"), fs::Permissions::from_mode(0)).unwrap();
+        fs::set_permissions(desk.path(".a.png.tmp"), fs::Permissions::from_mode(0o0)).unwrap();
         as_anybody(&desk, arguments)
             .expect(2, &["permission denied", ".a.png.tmp` was left by another user"]);
     }
