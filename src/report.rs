@@ -240,9 +240,18 @@ fn sentence(text: &str) -> String {
     text.lines().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// A text that cannot steer a terminal, nor reorder what is shown beside it.
+/// A text of one line that cannot steer a terminal, nor reorder what is shown beside it.
 fn printable(text: &str) -> String {
     text.chars().map(printable_char).collect()
+}
+
+/// The same for a text of several lines, whichever line ends it has.
+pub fn printable_lines(text: &str) -> String {
+    let line = |line: &str| {
+        let end = ["\r\n", "\n"].into_iter().find(|end| line.ends_with(end)).unwrap_or_default();
+        printable(&line[..line.len() - end.len()]) + end
+    };
+    text.split_inclusive('\n').map(line).collect()
 }
 
 fn printable_char(c: char) -> char {

@@ -7,7 +7,7 @@ use super::input::is_standard;
 use super::interrupt::Interrupt;
 use super::messages::{Messenger, on_standard_output};
 use super::progress::duration;
-use super::target::{Staged, Target};
+use super::target::{Staged, Target, patiently};
 use super::terminal::Terminal;
 use super::trace::{Plan, Traced, take, trace};
 use super::{Exit, Problem, scene as scenes};
@@ -57,6 +57,9 @@ impl<'a> Context<'a> {
         let threads = threads.map_err(|error| Problem::new(format!("cannot start the threads: {error}")))?;
         if arguments.keeping.keeps() {
             interrupt.heed_requests();
+        } else if arguments.keeping.wait.is_some() {
+            let problem = Problem::new("`--wait` is for work that is kept: else nobody is in the way");
+            return Err(problem.help("keep it with `--checkpoint` or `--resume`, or leave the flag out"));
         }
         Ok(Context { arguments, threads, terminal, interrupt })
     }
@@ -249,7 +252,8 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
         return Ok(Exit::Diagnostics);
     };
     let window = window(scene, arguments.crop)?;
-    let staged = stage(context, &job.targets, scene, window)?;
+    let wait = arguments.keeping.wait.unwrap_or_default();
+    let staged = patiently(wait, terminal, || stage(context, &job.targets, scene, window))?;
     let Some(from) = compiled.provenance(&loaded.sources) else { return Ok(Exit::Diagnostics) };
     let plan = Plan::new(arguments, from, window, &job.targets)?;
     let mut traced = context.threads.install(|| trace(context, &job.scene, plan, None))?;
@@ -276,9 +280,6 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
     if !arguments.quiet {
         compiled.notes.iter().for_each(|note| terminal.line(note));
         terminal.line(&summary(job, scene, &traced, start.elapsed()));
-        if arguments.denoise && traced.denoised.is_none() {
-            terminal.line("the picture is not denoised: that needs 2 samples a pixel");
-        }
     }
     Ok(exit)
 }
@@ -374,21 +375,23 @@ pub fn stage(
     scene: &Scene,
     window: Window,
 ) -> Result<Vec<Staged>, Problem> {
-    refuse_misfits(targets, scene, window)?;
+    refuse_misfits(targets, [window.width, window.height], is_transparent(scene))?;
     let Context { arguments, interrupt, .. } = context;
     let stage = if arguments.keeping.keeps() { Target::stage_again } else { Target::stage };
     targets.iter().map(|target| stage(target, interrupt)).collect()
 }
 
-/// A format must be able to hold the picture.
-fn refuse_misfits(targets: &[Target], scene: &Scene, window: Window) -> Result<(), Problem> {
+fn is_transparent(scene: &Scene) -> bool {
+    scene.trace.background == Background::Transparent
+}
+
+/// A format must be able to hold a picture of this size, which may be transparent.
+pub fn refuse_misfits(targets: &[Target], size: [u32; 2], transparent: bool) -> Result<(), Problem> {
     for target in targets {
-        if let Some(reason) = target.format.refuses([window.width, window.height]) {
+        if let Some(reason) = target.format.refuses(size) {
             return Err(Problem::new(reason.to_string()));
         }
-        if scene.trace.background == Background::Transparent
-            && let Some(reason) = target.format.refuses_alpha()
-        {
+        if transparent && let Some(reason) = target.format.refuses_alpha() {
             let help = "write another format, or leave `background: transparent` out";
             return Err(Problem::new(reason.to_string()).help(help));
         }
@@ -404,7 +407,8 @@ pub fn make(
     interrupt: &Interrupt,
 ) -> Result<Option<()>, Problem> {
     let window = Window::whole(from.scene.trace.size);
-    refuse_misfits(std::slice::from_ref(target), from.scene, window)?;
+    let size = [window.width, window.height];
+    refuse_misfits(std::slice::from_ref(target), size, is_transparent(from.scene))?;
     let staged = target.stage(interrupt)?;
     let Ok(traced) = take(from, window, control.clone()) else { return Ok(None) };
     write(traced.versions(), &traced.facts, &traced.channels, Depth::Eight, vec![staged]).map(Some)

@@ -5,7 +5,7 @@ use super::input::{Input, is_standard};
 use super::interrupt::Interrupt;
 use super::messages::{Messenger, on_standard_output};
 use super::scene::{self, Loaded};
-use super::target::{Aside, print};
+use super::target::{Aside, print_text};
 use super::terminal::Terminal;
 use super::{Exit, Problem};
 use rt_lang::lower::Overrides;
@@ -78,7 +78,7 @@ fn fixed(
     let text = &loaded.sources.get(loaded.id).text;
     if is_standard(path) {
         if !refused {
-            print(text.as_bytes())?;
+            print_text(text)?;
         }
     } else if *text != before {
         let mut aside = Aside::beside(path, interrupt)?;

@@ -6,6 +6,9 @@
 //! locking it others may come, who take it for one that was left.
 //!
 //! The disks of some farms know no locks. There a file gets a name that no other has, and what was left stays.
+//!
+//! What is left must not stand in the way of the next one, so a file can always be written by its owner while it is beside its
+//! place, whatever the permissions are that it gets when it is moved there.
 
 use super::interrupt::Interrupt;
 use std::fs::{self, File, OpenOptions, Permissions, TryLockError};
@@ -19,7 +22,8 @@ const SUFFIX: &str = ".tmp";
 /// How often others may come between before it is said that they are at it.
 const ATTEMPTS: u32 = 16;
 
-/// Makes a file in a folder by a name that no other has. It gets these permissions, or those that the umask leaves.
+/// Makes a file in a folder by a name that no other has. Its owner may write it, and besides it has these permissions, or those that
+/// the umask leaves.
 pub fn any(
     folder: &Path,
     permissions: Option<Permissions>,
@@ -77,7 +81,8 @@ fn builder<'a>(permissions: Option<Permissions>) -> Builder<'a, 'static> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        builder.permissions(permissions.unwrap_or(Permissions::from_mode(0o666)));
+        let mode = permissions.map_or(0o666, |permissions| permissions.mode() & 0o777 | 0o600);
+        builder.permissions(Permissions::from_mode(mode));
     }
     #[cfg(not(unix))]
     let _ = permissions;
@@ -113,8 +118,11 @@ fn remove_left(path: &Path) -> io::Result<()> {
     let left = match fs::symlink_metadata(path) {
         // Opening a pipe may never end.
         Ok(left) if !left.is_file() => Err(ErrorKind::InvalidInput.into()),
-        // Some systems lock only what may be written.
-        Ok(_) => OpenOptions::new().read(true).write(true).open(path),
+        // Some systems lock only what may be written; what another user has left may often be read alone.
+        Ok(_) => match OpenOptions::new().read(true).write(true).open(path) {
+            Err(error) if error.kind() == ErrorKind::PermissionDenied => File::open(path),
+            opened => opened,
+        },
         Err(error) => Err(error),
     };
     let left = match left {

@@ -3,7 +3,7 @@
 use super::args::Expand;
 use super::interrupt::Interrupt;
 use super::scene;
-use super::target::{Aside, print};
+use super::target::{Aside, print_text};
 use super::terminal::Terminal;
 use super::{Exit, Problem};
 use rt_lang::expand::expand;
@@ -30,7 +30,7 @@ pub fn run(arguments: &Expand, terminal: Terminal, interrupt: &Interrupt) -> Res
             aside.write(text.as_bytes())?;
             aside.finish()?;
         }
-        None => print(text.as_bytes())?,
+        None => print_text(&text)?,
     }
     Ok(Exit::Done)
 }

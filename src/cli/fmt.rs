@@ -4,11 +4,10 @@ use super::args::Fmt;
 use super::input::{self, is_standard};
 use super::interrupt::Interrupt;
 use super::terminal::Terminal;
-use super::{Exit, Problem, plain, target};
+use super::{Exit, Problem, target};
 use rt_lang::diagnostic::any_errors;
 use rt_lang::{ide, syntax};
 use similar::TextDiff;
-use std::io::{Write, stdout};
 use std::ops::RangeInclusive;
 use std::path::Path;
 
@@ -40,12 +39,12 @@ fn one(file: &Path, arguments: &Fmt, terminal: Terminal, interrupt: &Interrupt) 
     };
     let changes = formatted != source.text;
     if arguments.diff && changes {
-        show(&difference(&source.name, &source.text, &formatted))?;
+        target::print_text(&difference(&source.name, &source.text, &formatted))?;
     } else if arguments.check && changes {
-        show(&format!("{}\n", source.name))?;
+        target::print_text(&format!("{}\n", source.name))?;
     } else if !arguments.check && !arguments.diff {
         match is_standard(file) {
-            true => show(&formatted)?,
+            true => target::print_text(&formatted)?,
             false if changes => target::replace(file, formatted.as_bytes(), interrupt)?,
             false => {}
         }
@@ -71,10 +70,4 @@ fn within(text: &str, formatted: &str, lines: &RangeInclusive<usize>) -> String 
 /// What would change, as `diff -u` shows it.
 fn difference(name: &str, before: &str, after: &str) -> String {
     TextDiff::from_lines(before, after).unified_diff().header(name, name).to_string()
-}
-
-fn show(text: &str) -> Result<(), Problem> {
-    let mut stdout = stdout().lock();
-    let written = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
-    written.map_err(|error| Problem::new(format!("cannot write standard output: {}", plain(&error))))
 }

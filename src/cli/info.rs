@@ -2,8 +2,9 @@
 
 use super::args::Info;
 use super::files::Asked;
+use super::input::size;
 use super::scene::{self, Loaded};
-use super::target::print;
+use super::target::{print_text, print_words};
 use super::terminal::Terminal;
 use super::{Exit, Problem};
 use rt_lang::files::FileError;
@@ -23,8 +24,10 @@ pub fn run(arguments: &Info, terminal: Terminal) -> Result<Exit, Problem> {
     let loaded = scene::load(&arguments.scene, &arguments.reading, &overrides)?;
     terminal.diagnostics(&loaded.compiled.diagnostics, &loaded.sources);
     let Some(scene) = &loaded.compiled.scene else { return Ok(Exit::Diagnostics) };
-    let text = if arguments.json { format!("{}\n", object(&loaded, scene)) } else { words(&loaded, scene) };
-    print(text.as_bytes())?;
+    match arguments.json {
+        true => print_text(&format!("{}\n", object(&loaded, scene)))?,
+        false => print_words(&words(&loaded, scene))?,
+    }
     Ok(Exit::Done)
 }
 
@@ -111,10 +114,10 @@ fn words(loaded: &Loaded, scene: &Scene) -> String {
         Target::Noise(noise) => format!("as many samples as {}% noise need", noise * 100.0),
     };
     row("picture", &format!("{width}×{height}, {until}, {} bounces", scene.trace.bounces));
-    row("memory", &format!("about {}", bytes(render::memory(scene))));
+    row("memory", &format!("about {}", size(render::memory(scene))));
     for asked in loaded.files.asked() {
         let said = match &asked.size {
-            Ok(size) => bytes(*size as u64),
+            Ok(bytes) => size(*bytes as u64),
             Err(error) => reason(error),
         };
         row("file", &format!("{} ({said})", asked.path.display()));
@@ -141,26 +144,12 @@ pub fn short(x: f64) -> f64 {
     format!("{x:.3e}").parse::<f64>().unwrap_or(x) + 0.0
 }
 
-/// A size as one says it.
-fn bytes(count: u64) -> String {
-    match count {
-        0..1024 => format!("{count} bytes"),
-        1024..1_048_576 => format!("{:.1} KiB", count as f64 / 1024.0),
-        1_048_576..1_073_741_824 => format!("{:.1} MiB", count as f64 / 1_048_576.0),
-        _ => format!("{:.1} GiB", count as f64 / 1_073_741_824.0),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn numbers_read_well() {
-        assert_eq!(
-            (bytes(10), bytes(2048), bytes(3 << 20)),
-            ("10 bytes".into(), "2.0 KiB".into(), "3.0 MiB".into())
-        );
         assert_eq!((short(0.1 + 0.2), short(-0.0), short(12_345_678.0)), (0.3, 0.0, 12_350_000.0));
     }
 }

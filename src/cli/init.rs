@@ -40,6 +40,6 @@ pub fn run(arguments: &Init) -> Result<Exit, Problem> {
     }
     let scene = folder.join("scene.rt");
     let scene = scene.strip_prefix(".").unwrap_or(&scene).display();
-    target::print(format!("made {scene}; render it with\n\n  rtc build {scene}\n").as_bytes())?;
+    target::print_words(&format!("made {scene}; render it with\n\n  rtc build {scene}\n"))?;
     Ok(Exit::Done)
 }

@@ -60,6 +60,12 @@ pub fn read_plain(path: &Path, most: u64) -> Result<Vec<u8>, Problem> {
     all(path, open_plain(path), most)
 }
 
+/// Whether there is something at a path. Where that cannot be told, it is not taken for nothing.
+pub fn is_there(path: &Path) -> Result<bool, Problem> {
+    path.try_exists()
+        .map_err(|error| Problem::new(format!("cannot read `{}`: {}", path.display(), plain(&error))))
+}
+
 /// Opens a plain file; a pipe would be waited for, maybe for ever.
 pub fn open_plain(path: &Path) -> io::Result<File> {
     match fs::metadata(path)?.is_file() {
@@ -78,9 +84,19 @@ fn all(path: &Path, from: io::Result<impl Read>, most: u64) -> Result<Vec<u8>, P
     };
     let bytes = from.and_then(|from| limited(from, most)).map_err(problem)?;
     if bytes.len() as u64 > most {
-        return Err(Problem::new(format!("`{}` is larger than {} MiB", path.display(), most >> 20)));
+        return Err(Problem::new(format!("`{}` is larger than {}", path.display(), size(most))));
     }
     Ok(bytes)
+}
+
+/// A size as one says it.
+pub fn size(count: u64) -> String {
+    match count {
+        0..1024 => format!("{count} bytes"),
+        1024..1_048_576 => format!("{:.1} KiB", count as f64 / 1024.0),
+        1_048_576..1_073_741_824 => format!("{:.1} MiB", count as f64 / 1_048_576.0),
+        _ => format!("{:.1} GiB", count as f64 / 1_073_741_824.0),
+    }
 }
 
 /// At most one byte more than `most`, so that it shows when there are more.
@@ -154,6 +170,11 @@ mod tests {
         assert_eq!(input.sources.get(input.id).line_column(refused.primary.span.start as usize), (2, 3));
         assert_eq!(refused.primary.text, "byte 0xFF, the 14th of the file");
         assert!(take("a.rt".into(), b"".to_vec(), 100).refused.is_none());
+    }
+
+    #[test]
+    fn sizes_read_well() {
+        assert_eq!([10, 2048, 3 << 20].map(size), ["10 bytes", "2.0 KiB", "3.0 MiB"]);
     }
 
     #[test]

@@ -4,15 +4,19 @@ use super::args::{Every, Keeping, Resume};
 use super::interrupt::Interrupt;
 use super::target::{Aside, Target};
 use super::terminal::Terminal;
-use super::{Problem, input};
+use super::{Problem, build, input};
 use rt_lang::output::{Facts, MOST_PIXELS};
 use rt_lang::render::making::Making;
 use rt_lang::saved::{self, CHANNELS, Saved, Subject};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// The largest file of samples that is read: the most pixels, uncompressed, and a little more.
 pub const LARGEST: u64 = MOST_PIXELS * 4 * (CHANNELS.len() as u64 + 5);
+
+/// How many times as long as keeping them took samples are traced before they are kept again, so that a large picture is not kept
+/// for more of the time than it is made.
+const COST: u32 = 20;
 
 /// Where the samples of a picture are kept, and where they come from.
 pub struct Places {
@@ -42,7 +46,7 @@ pub fn places(arguments: &Keeping, targets: &[Target]) -> Result<Option<Places>,
         (None, Some(Resume::From(file))) => file.clone(),
         (None, _) => beside(targets)?,
     };
-    if targets.iter().any(|target| target.path == to) {
+    if targets.iter().any(|target| build::same(&target.path) == build::same(&to)) {
         let problem =
             Problem::new(format!("`{}` would be both the picture and its checkpoint", to.display()));
         return Err(problem.help("name another file: `--checkpoint=FILE`"));
@@ -80,6 +84,8 @@ pub struct Keeper<'a> {
     held: Option<Aside>,
     /// When they were kept last, and how many samples a pixel those were.
     last: (Instant, f64),
+    /// How long that took.
+    cost: Duration,
     /// Whether it was said that they cannot be kept.
     complained: bool,
 }
@@ -94,7 +100,8 @@ impl<'a> Keeper<'a> {
         terminal: Terminal,
     ) -> Keeper<'a> {
         let last = (Instant::now(), 0.0);
-        Keeper { places, every, subject, facts, interrupt, terminal, held: None, last, complained: false }
+        let (held, cost) = (None, Duration::ZERO);
+        Keeper { places, every, subject, facts, interrupt, terminal, held, last, cost, complained: false }
     }
 
     /// The picture to go on with; none where there is nothing to go on from. What differs is an error, in what `refuses` says
@@ -107,7 +114,7 @@ impl<'a> Keeper<'a> {
         self.held = Some(Aside::hold(&self.places.to, self.interrupt)?);
         drop(Aside::always_beside(&self.places.to, self.interrupt)?);
         let Some((path, must_be)) = &self.places.from else { return Ok(None) };
-        if !must_be && !path.exists() {
+        if !must_be && !input::is_there(path)? {
             return Ok(None);
         }
         let bytes = input::read_plain(path, LARGEST)?;
@@ -132,19 +139,18 @@ impl<'a> Keeper<'a> {
 
     /// Keeps the samples if it is time, or if that was asked for.
     pub fn consider(&mut self, making: &Making) {
-        let due = match self.every {
-            Every::Time(time) => self.last.0.elapsed() >= time,
-            Every::Samples(samples) => making.mean_samples() - self.last.1 >= f64::from(samples),
-        };
+        let since = (self.last.0.elapsed(), making.mean_samples() - self.last.1);
         // What was asked for is done, whether it was due or not.
-        if self.interrupt.is_requested() || due {
+        if self.interrupt.is_requested() || is_due(self.every, since, self.cost) {
             self.keep(making);
         }
     }
 
     /// Keeps the samples. Where that fails, what was kept before stays, and the picture goes on.
     pub fn keep(&mut self, making: &Making) {
+        let start = Instant::now();
         let kept = self.write(making);
+        self.cost = start.elapsed();
         self.last = (Instant::now(), making.mean_samples());
         if let Err(problem) = kept
             && !self.complained
@@ -163,9 +169,36 @@ impl<'a> Keeper<'a> {
     }
 }
 
+/// Whether samples are to be kept again, so long and so many samples after they were, where that takes so long.
+fn is_due(every: Every, (time, samples): (Duration, f64), cost: Duration) -> bool {
+    let wanted = match every {
+        Every::Time(every) => time >= every,
+        Every::Samples(every) => samples >= f64::from(every),
+    };
+    wanted && time >= cost.saturating_mul(COST)
+}
+
 /// Replaces a file by another that is whole.
 fn write(path: &Path, bytes: &[u8], interrupt: &Interrupt) -> Result<(), Problem> {
     let mut aside = Aside::always_beside(path, interrupt)?;
     aside.write(bytes)?;
     aside.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_is_traced_far_longer_than_it_is_kept() {
+        let seconds = Duration::from_secs;
+        let due = |every, time, samples, cost| is_due(every, (seconds(time), samples), seconds(cost));
+        let minute = Every::Time(seconds(60));
+        assert!(due(minute, 60, 0.0, 0) && due(minute, 60, 0.0, 3) && !due(minute, 59, 9.0, 0));
+        assert!(!due(minute, 60, 9.0, 25) && !due(minute, 499, 9.0, 25) && due(minute, 500, 9.0, 25));
+        let ten = Every::Samples(10);
+        assert!(
+            due(ten, 0, 10.0, 0) && !due(ten, 900, 9.0, 0) && !due(ten, 19, 10.0, 1) && due(ten, 20, 10.0, 1)
+        );
+    }
 }

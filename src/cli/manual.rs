@@ -10,7 +10,7 @@ use std::path::Path;
 pub fn completions(arguments: &Completions) -> Result<Exit, Problem> {
     let mut script = vec![];
     clap_complete::generate(arguments.shell, &mut Arguments::command(), "rtc", &mut script);
-    target::print(&script)?;
+    target::print(script.as_slice())?;
     Ok(Exit::Done)
 }
 
@@ -20,7 +20,7 @@ pub fn man(arguments: &Man) -> Result<Exit, Problem> {
     // Only a built command knows the full names of its parts.
     command.build();
     let Some(folder) = &arguments.dir else {
-        target::print(&page(command)?)?;
+        target::print(page(command)?.as_slice())?;
         return Ok(Exit::Done);
     };
     let cannot = |path: &Path, error: &std::io::Error| {

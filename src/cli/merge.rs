@@ -19,12 +19,19 @@ pub fn run(arguments: &Merge, terminal: Terminal, interrupt: &Interrupt) -> Resu
     let targets = build::targets(&arguments.outputs)?;
     build::refuse_inputs_as_outputs(&arguments.parts, &build::paths(&targets))?;
     build::refuse_idle_depth(arguments.bits, &targets)?;
+    // Adding up many shares takes a while: what cannot be written is to be known before.
+    let staged: Vec<Staged> =
+        targets.iter().map(|target| target.stage(interrupt)).collect::<Result<_, _>>()?;
     let mut merging: Option<Merging> = None;
     for path in &arguments.parts {
         let added = add(merging.as_mut(), path);
         match added {
             Ok(None) => {}
-            Ok(first) => merging = first,
+            Ok(Some(first)) => {
+                let picture = saved::picture(first.film(), &first.subject().identity);
+                build::refuse_misfits(&targets, picture.size, picture.alpha.is_some())?;
+                merging = Some(first);
+            }
             Err(problem) if arguments.partial => terminal.problem(&problem.help("it is left out")),
             Err(problem) => return Err(problem),
         }
@@ -35,7 +42,6 @@ pub fn run(arguments: &Merge, terminal: Terminal, interrupt: &Interrupt) -> Resu
         return Err(Problem::new(missing_words(&missing, merging.share().of))
             .help("make them with `--shard I/N`, or look at what there is with `--partial`"));
     }
-    let staged: Result<Vec<Staged>, Problem> = targets.iter().map(|target| target.stage(interrupt)).collect();
     let (film, identity) = (merging.film(), &merging.subject().identity);
     let samples = film.pixels().first().map_or(0, |pixel| pixel.samples());
     let facts = Facts { limit: Some(Limit::Samples.word().into()), ..merging.facts().clone() };
@@ -46,7 +52,7 @@ pub fn run(arguments: &Merge, terminal: Terminal, interrupt: &Interrupt) -> Resu
     if !missing.is_empty() {
         channels.texts.push((SHARES.into(), format!("{shares} of {of}")));
     }
-    build::write(&picture, &facts, &channels, arguments.bits, staged?)?;
+    build::write(&picture, &facts, &channels, arguments.bits, staged)?;
     if !arguments.quiet {
         if !missing.is_empty() {
             terminal.line(&missing_words(&missing, of));

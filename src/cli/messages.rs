@@ -37,8 +37,8 @@ impl<'a> Messenger<'a> {
         match self.wanted.message_format {
             Show::Human => self.terminal.diagnostics(&said, sources),
             Show::Short => self.terminal.text(&lines(report::short)),
-            Show::Json => target::print(lines(report::json).as_bytes())?,
-            Show::Github => target::print(lines(report::github).as_bytes())?,
+            Show::Json => target::print_text(&lines(report::json))?,
+            Show::Github => target::print_text(&lines(report::github))?,
             Show::Sarif => said.iter().for_each(|diagnostic| self.sarif.add(diagnostic, sources)),
         }
         if let (Some(first), Show::Human | Show::Short) = (denied.first(), self.wanted.message_format) {
@@ -55,7 +55,7 @@ impl<'a> Messenger<'a> {
     /// Ends the run.
     pub fn finish(self) -> Result<(), Problem> {
         match self.wanted.message_format {
-            Show::Sarif => target::print((self.sarif.finish() + "\n").as_bytes()),
+            Show::Sarif => target::print_text(&(self.sarif.finish() + "\n")),
             _ => Ok(()),
         }
     }

@@ -75,11 +75,13 @@ enum Exit {
 struct Problem {
     message: String,
     help: Option<String>,
+    /// Whether another process is at it, so that it may do later.
+    busy: bool,
 }
 
 impl Problem {
     fn new(message: impl Into<String>) -> Problem {
-        Problem { message: message.into(), help: None }
+        Problem { message: message.into(), help: None, busy: false }
     }
 
     fn help(self, help: impl Into<String>) -> Problem {
@@ -101,7 +103,12 @@ pub fn main() -> ExitCode {
         Ok(arguments) => arguments,
         // Help and version too: they come as an error that prints to standard output and exits with 0.
         Err(error) => {
-            let printed = error.print();
+            let printed = if error.use_stderr() && steers() {
+                Terminal::new().line(error.render().to_string().trim_end());
+                Ok(())
+            } else {
+                error.print()
+            };
             let code = if printed.is_ok() { error.exit_code() } else { Exit::Usage as i32 };
             return ExitCode::from(code as u8);
         }
@@ -130,6 +137,11 @@ pub fn main() -> ExitCode {
         Exit::Usage
     });
     ExitCode::from(exit as u8)
+}
+
+/// Whether an argument, which a star may have made of the name of a file, could steer the terminal that it is quoted on.
+fn steers() -> bool {
+    std::env::args_os().any(|argument| argument.to_string_lossy().contains(char::is_control))
 }
 
 /// A panic is a bug here, whatever the input was; the exit code is then 101.

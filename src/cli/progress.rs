@@ -2,6 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rt_lang::render::Control;
+use rt_lang::report::printable_lines;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
@@ -43,7 +44,7 @@ fn draw(control: &Control, name: String, finished: &AtomicBool) {
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
     let style = ProgressStyle::with_template("{prefix} {bar:24} {percent:>3} %  {msg}");
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar.set_prefix(name);
+    bar.set_prefix(printable_lines(&name));
     while !finished.load(Ordering::Relaxed) {
         let progress = control.progress();
         let elapsed = start.elapsed();

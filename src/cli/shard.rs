@@ -34,6 +34,11 @@ fn array(variable: &dyn Fn(&str) -> Option<String>) -> Result<(u32, u32), Proble
     let help =
         "say how many shares there are: `--shard auto/N` takes only the first number from the scheduler";
     match numbers {
+        // One task alone is far more often what is left of many.
+        [Some(_), Some(1), ..] => Err(Problem::new(
+            "this is a Slurm job array of one task: `--shard auto` cannot tell how many shares there are",
+        )
+        .help(help)),
         [Some(id), Some(count), Some(1), Some(max)] if max == count => Ok((id, count)),
         [Some(_), Some(count), ..] => {
             let which = format!("this is a Slurm job array of {count} tasks, and not all from 1 to {count}");
@@ -114,7 +119,9 @@ mod tests {
         assert_eq!(ask(Shard::Auto, &slurm("3", "4", "1", "4")), Ok((3, 4)));
         // A lost one, made again alone.
         let again = slurm("3", "1", "3", "3");
-        assert!(ask(Shard::Auto, &again).is_err_and(|why| why.contains("cannot tell")));
+        for alone in [&again, &slurm("1", "1", "1", "1")] {
+            assert!(ask(Shard::Auto, alone).is_err_and(|why| why.contains("cannot tell")));
+        }
         assert_eq!(ask(Shard::AutoOf(4), &again), Ok((3, 4)));
         assert_eq!(ask(Shard::AutoOf(4), &[("JOB_COMPLETION_INDEX", "0")]), Ok((1, 4)));
         assert!(ask(Shard::AutoOf(4), &[("JOB_COMPLETION_INDEX", "4")]).is_err());

@@ -3,11 +3,14 @@
 
 use super::input::is_standard;
 use super::interrupt::Interrupt;
+use super::terminal::Terminal;
 use super::{Problem, claim, plain};
 use rt_lang::output::Format;
-use std::fs;
-use std::io::{self, ErrorKind, IsTerminal, Write, stdout};
+use rt_lang::report::printable_lines;
+use std::fs::{self, Permissions};
+use std::io::{self, ErrorKind, IsTerminal, Read, Write, stdout};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 use tempfile::NamedTempFile;
 
 /// A picture's destination and form.
@@ -85,6 +88,8 @@ pub struct Aside {
     path: PathBuf,
     /// The file, and its place with links resolved; none once it is moved.
     file: Option<(NamedTempFile, PathBuf)>,
+    /// Those of the file that is replaced.
+    permissions: Option<Permissions>,
     interrupt: Interrupt,
 }
 
@@ -110,13 +115,21 @@ impl Aside {
         let permissions = fs::metadata(path).ok().map(|existing| existing.permissions());
         let place = place(path)?;
         let folder = folder(&place);
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        // Of the place, so that whoever comes by another link finds the same.
+        let name = place.file_name().unwrap_or_default().to_string_lossy();
         let made = match always {
-            Some(suffix) => claim::always(folder, &format!("{name}{suffix}"), permissions, interrupt),
-            None => claim::any(folder, permissions, interrupt),
+            Some(suffix) => claim::always(folder, &format!("{name}{suffix}"), permissions.clone(), interrupt),
+            None => claim::any(folder, permissions.clone(), interrupt),
         };
-        let file = made.map_err(|error| cannot_write(&shown(path), &error))?;
-        Ok(Aside { path: path.into(), file: Some((file, place)), interrupt: interrupt.clone() })
+        let file = made.map_err(|error| {
+            let problem = cannot_write(&shown(path), &error);
+            let beside = folder.join(format!(".{name}{}.tmp", always.unwrap_or_default()));
+            match error.kind() == ErrorKind::PermissionDenied && always.is_some() && beside.exists() {
+                true => problem.help(format!("`{}` was left by another user: remove it", beside.display())),
+                false => problem,
+            }
+        })?;
+        Ok(Aside { path: path.into(), file: Some((file, place)), permissions, interrupt: interrupt.clone() })
     }
 
     /// Writes all bytes and waits until they are on the disk.
@@ -158,6 +171,10 @@ impl Aside {
                 claim::discard(file);
                 return Err(ErrorKind::ResourceBusy.into());
             }
+            if let Some(permissions) = self.permissions.take() {
+                // Where they cannot be given, what is written counts for more.
+                let _ = file.as_file().set_permissions(permissions);
+            }
             file.persist(&place).map(drop).map_err(|error| error.error)
         });
         moved.map_err(|error| cannot_write(&shown(&self.path), &error))?;
@@ -175,20 +192,42 @@ impl Drop for Aside {
     }
 }
 
-/// Writes to standard output.
-pub fn print(bytes: &[u8]) -> Result<(), Problem> {
+/// Writes to standard output what people read. What of it comes from a file steers no terminal, whatever it passes on its way.
+pub fn print_words(text: &str) -> Result<(), Problem> {
+    print(printable_lines(text).as_bytes())
+}
+
+/// Writes a text to standard output: as it is for a program, and for a terminal so that it does not steer it.
+pub fn print_text(text: &str) -> Result<(), Problem> {
+    if stdout().is_terminal() { print_words(text) } else { print(text.as_bytes()) }
+}
+
+/// Writes all there is to standard output, byte by byte as it is.
+pub fn print(mut from: impl Read) -> Result<(), Problem> {
     let mut stdout = stdout().lock();
-    let written = stdout.write_all(bytes).and_then(|()| stdout.flush());
+    let written = io::copy(&mut from, &mut stdout).and_then(|_| stdout.flush());
     written.map_err(|error| cannot_write("standard output", &error))
 }
 
-/// The file that is written for a path: where a link stands, what it points to is replaced, not the link.
+/// How many links are followed one after the other, as Linux does.
+const MOST_LINKS: usize = 40;
+
+/// The file that is written for a path: where a link stands, what it points to is replaced or made, not the link.
 fn place(path: &Path) -> Result<PathBuf, Problem> {
     let cannot = |reason: String| Problem::new(format!("cannot write `{}`: {reason}", path.display()));
     if fs::metadata(path).is_ok_and(|existing| !existing.is_file()) {
         return Err(cannot("there is something that is not a file".into()));
     }
-    let place = fs::canonicalize(path).unwrap_or_else(|_| path.into());
+    let mut place = path.to_path_buf();
+    // Of a link to what is not there yet the system does not tell the end.
+    for _ in 0..MOST_LINKS {
+        let Ok(to) = fs::read_link(&place) else { break };
+        place = folder(&place).join(to);
+    }
+    if place.is_symlink() {
+        return Err(cannot("its links lead in a circle".into()));
+    }
+    let place = fs::canonicalize(&place).unwrap_or(place);
     let folder = folder(&place);
     match folder.is_dir() {
         true => Ok(place),
@@ -209,14 +248,38 @@ fn shown(path: &Path) -> String {
 fn cannot_write(name: &str, error: &io::Error) -> Problem {
     match error.kind() {
         ErrorKind::ResourceBusy => {
-            Problem::new(format!("cannot write {name}: another process is writing it"))
-                .help("wait until that is done, or write another file")
+            let problem = Problem::new(format!("cannot write {name}: another process is writing it"))
+                .help("wait until that is done, as `--wait` does, or write another file");
+            Problem { busy: true, ..problem }
         }
         ErrorKind::InvalidInput => {
             Problem::new(format!("cannot write {name}: what is beside it for that is not a file"))
                 .help("remove what has its name with a dot before it and `.tmp` behind")
         }
         _ => Problem::new(format!("cannot write {name}: {}", plain(error))),
+    }
+}
+
+/// How often it is tried again what another process has.
+const PERIOD: Duration = Duration::from_millis(500);
+
+/// Tries again for so long while another process is at it, and says so once.
+pub fn patiently<T>(
+    wait: Duration,
+    terminal: Terminal,
+    mut attempt: impl FnMut() -> Result<T, Problem>,
+) -> Result<T, Problem> {
+    let (start, mut said) = (Instant::now(), false);
+    loop {
+        match attempt() {
+            Err(problem) if problem.busy && start.elapsed() < wait => {
+                if !std::mem::replace(&mut said, true) {
+                    terminal.line(&format!("{}: it is waited for", problem.message));
+                }
+                std::thread::sleep(PERIOD);
+            }
+            ended => return ended,
+        }
     }
 }
 

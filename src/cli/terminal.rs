@@ -3,7 +3,7 @@
 use super::Problem;
 use anstream::{AutoStream, ColorChoice};
 use rt_lang::diagnostic::Diagnostic;
-use rt_lang::report::{self, Style};
+use rt_lang::report::{self, Style, printable_lines};
 use rt_lang::source::Sources;
 use std::io::{IsTerminal, Write, stderr};
 
@@ -42,15 +42,15 @@ impl Terminal {
         self.style
     }
 
-    /// Writes a line.
+    /// Writes a line, or several. What it names may come from a file, and cannot steer the terminal.
     pub fn line(self, text: &str) {
-        self.text(&format!("{text}\n"));
+        self.text(&format!("{}\n", printable_lines(text)));
     }
 
     /// Says what is wrong with the command or a file.
     pub fn problem(self, problem: &Problem) {
         let (on, off) = if self.style.color { ("\u{1b}[1;31m", "\u{1b}[0m") } else { ("", "") };
-        self.line(&format!("{on}error:{off} {}", problem.message));
+        self.text(&format!("{on}error:{off} {}\n", printable_lines(&problem.message)));
         if let Some(help) = &problem.help {
             self.line(&format!("  help: {help}"));
         }
@@ -61,7 +61,7 @@ impl Terminal {
         self.text(&report::all(diagnostics, sources, self.style));
     }
 
-    /// Writes a text that has its line ends.
+    /// Writes a report, which has its line ends and, maybe, colours.
     pub fn text(self, text: &str) {
         if self.silent {
             return;

@@ -2,7 +2,7 @@
 
 use super::args::Why as Arguments;
 use super::info::short;
-use super::target::print;
+use super::target::{print_text, print_words};
 use super::terminal::Terminal;
 use super::{Exit, Problem, scene as scenes};
 use rt_lang::diagnostic::Label;
@@ -41,14 +41,14 @@ pub fn run(arguments: &Arguments, terminal: Terminal) -> Result<Exit, Problem> {
     let mut apart = Apart::new(tracer.prepass().scale);
     tracer.take_apart(pixel, 0..samples, &mut apart);
     let why = Why::new(pixel, &apart, by, from);
-    let text = if arguments.json {
+    if arguments.json {
         let object = serde_json::to_string(&why);
-        object.unwrap_or_else(|_| unreachable!("texts and finite numbers are always JSON")) + "\n"
+        let object = object.unwrap_or_else(|_| unreachable!("texts and finite numbers are always JSON"));
+        print_text(&(object + "\n"))?;
     } else {
         let style = Style { color: false, ..terminal.style() };
-        words(&why, &loaded.sources.get(loaded.id).name, &loaded.sources, style)
-    };
-    print(text.as_bytes())?;
+        print_words(&words(&why, &loaded.sources.get(loaded.id).name, &loaded.sources, style))?;
+    }
     Ok(Exit::Done)
 }
 

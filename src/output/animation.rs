@@ -202,6 +202,14 @@ impl<W: Write + Seek> Animation<W> {
         }
     }
 
+    /// How many frames like those so far fit, where not all of them do.
+    pub fn fitting(&self) -> Option<u32> {
+        let Animation::WebP(reel, riff) = self else { return None };
+        let a_frame = riff.length.div_ceil(u64::from(riff.frames.max(1)));
+        let fitting = (u64::from(u32::MAX) - OUTSIDE) / a_frame.max(1);
+        (fitting < u64::from(reel.frames)).then_some(fitting as u32)
+    }
+
     /// Ends the film, after its last frame.
     ///
     /// # Errors

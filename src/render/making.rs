@@ -227,6 +227,11 @@ impl Making {
         None
     }
 
+    /// How many samples every pixel gets, however little time there is: one in each half.
+    fn least(&self) -> u32 {
+        if self.is_in_halves() { 2 } else { 1 }
+    }
+
     /// The same on the way: aims for no more samples than so many paths give, or than some pixels have already, for all that are
     /// going on are to get as many.
     fn slow_down(&mut self, paths: u64) {
@@ -234,7 +239,7 @@ impl Making {
         let goal = open().map(|block| block.aim).max().unwrap_or(0);
         // Those of the rung that are done with it.
         let [_, most] = self.samples();
-        let (mut low, mut high) = (most.min(goal), goal);
+        let (mut low, mut high) = (most.max(self.least()).min(goal), goal);
         while low < high {
             let middle = low + (high - low).div_ceil(2);
             if self.paths_to(middle) <= paths { low = middle } else { high = middle - 1 }
@@ -250,7 +255,7 @@ impl Making {
         // One sample is made to know how long it takes.
         let fits =
             |aim: u32| paths.map_or(aim == most + 1, |paths| aim <= most || self.paths_to(aim) <= paths);
-        if goal > most && !fits(most + 1) {
+        if goal > most && most >= self.least() && !fits(most + 1) {
             return Some(Limit::Time);
         }
         let (mut low, mut high) = (goal.min(most + 1), goal);

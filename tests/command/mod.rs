@@ -7,6 +7,7 @@ mod keeping;
 mod layout;
 mod lsp;
 mod pictures;
+mod places;
 mod tools;
 mod watch;
 mod why;

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# A real Slurm on this machine with four workers: a picture in four shares by the scripts of examples/cluster, one worker
-# killed midway, its share submitted again, and the same bytes as one process with one thread makes alone; and a film in three runs
-# of frames.
+# A real Slurm on this machine with five workers: a picture in four shares by the very lines of examples/cluster/README.md. One
+# worker is killed midway, one task put back into the queue, one cancelled and asked for again, one ended by its time; and the picture
+# has the same bytes as one process with one thread makes alone. And a film in three runs of frames.
 # Usage: farm.sh RTC ROOT, in an empty folder. Needs munged, slurmctld, slurmd and sbatch, and root, as which they run.
 set -euo pipefail
 export PATH=$PATH:/usr/sbin
@@ -57,7 +57,8 @@ ClusterName=e2e
 SlurmctldHost=$host(127.0.0.1)
 SlurmctldPort=17800
 AuthType=auth/munge
-AuthInfo=socket=$state/munge.socket
+# What goes back into the queue is held there for as long as a worker could take it for what it has just ended: else two minutes.
+AuthInfo=socket=$state/munge.socket,cred_expire=10
 CredType=cred/munge
 SlurmUser=$(id -un)
 SlurmdUser=$(id -un)
@@ -74,8 +75,12 @@ SlurmctldLogFile=$state/control.log
 SlurmdLogFile=$state/%n.log
 MailProg=/bin/true
 ReturnToService=2
+# A worker that is gone is soon known to be; what it was at goes back into the queue, as it does by default.
+SlurmdTimeout=10
+JobRequeue=1
+KillWait=30
 SchedulerParameters=batch_sched_delay=0,sched_interval=2
-NodeName=w[1-4] NodeHostname=$host NodeAddr=127.0.0.1 Port=[17801-17804] CPUs=1 State=UNKNOWN
+NodeName=w[1-5] NodeHostname=$host NodeAddr=127.0.0.1 Port=[17801-17805] CPUs=1 State=UNKNOWN
 PartitionName=all Nodes=ALL Default=YES State=UP
 CONF
 export SLURM_CONF=$state/slurm.conf
@@ -83,54 +88,110 @@ mkdir "$state/control"
 slurmctld -D >"$state/control.out" 2>&1 &
 pids+=($!)
 declare -A daemon
-for worker in w1 w2 w3 w4; do
+for worker in w1 w2 w3 w4 w5; do
   mkdir "$state/spool-$worker"
   slurmd -D -N "$worker" >"$state/$worker.out" 2>&1 &
   daemon[$worker]=$!
   pids+=($!)
 done
-idle() { [ "$(sinfo --noheader --format=%D --states=idle)" = 4 ]; }
-wait_for 60 "four idle workers" idle
+idle() { [ "$(sinfo --noheader --format=%D --states=idle)" = 5 ]; }
+wait_for 60 "five idle workers" idle
 
 scene=$root/examples/three-balls.rt
 flags=(--size 160x120 --samples 1200)
 export RTC=$rtc
+export PATH=$(dirname "$rtc"):$PATH
+mkdir farm
+cp "$scripts"/*.sbatch farm
+cp "$scene" farm/room.rt
+cat > farm/film.rt <<'SCENE'
+param t: number = 0
+sphere { radius: 1m, at: (0, t * 1m, 0) }
+plane { at: (0, -1, 0)m }
+light { at: (2, 4, 3)m, radius: 30cm, power: 90W }
+SCENE
 
-array=$(sbatch --parsable --array=1-4 --output="$desk/share-%a.log" \
-  "$scripts/shares.sbatch" "$scene" parts "${flags[@]}" --checkpoint-every 1s)
-echo "  four shares are job $array"
+# A line of the README that holds these words, as a farm's user copies it, with less to do.
+recipe() {
+  local line
+  line=$(grep -F "$1" "$scripts/README.md" | grep '^sbatch')
+  [ "$(wc -l <<<"$line")" = 1 ] || { echo "not one line of the README has \`$1\`" >&2; exit 1; }
+  sed -e 's/1-64/1-4/; s/array=17/array=4/; s/room.rt 64/room.rt 4/; s/--samples 4096/--samples 1200 --size 160x120 --checkpoint-every 1s/' \
+    -e 's/1-16/1-3/; s/480 16 frames/7 3 frames/; s/--frames 480/--frames 7/; s/--samples 256/--samples 8 --size 80x60/g' <<<"$line"
+}
+submit() { # WORDS: runs the line in the folder, and prints the number of the job that comes last.
+  local line said
+  line=$(recipe "$1")
+  echo "  $line" >&2
+  said=$(cd farm && eval "$line")
+  echo "${said##* }"
+}
+numbered() { squeue --noheader --name=rtc-shares --format=%F | sort -n | tail -n 1; }
+gone() { [ -z "$(squeue --noheader --job="$1" 2>/dev/null)" ]; }
+state() { squeue --noheader --format=%T --array --job="$1"; }
+
+merge=$(submit 'array=1-64 shares.sbatch')
+array=$(numbered)
+echo "  four shares are job $array, their merge is job $merge"
+
+# Meanwhile, one whose time is up: it is told before, and keeps what it has.
+timed=$(sbatch --parsable --array=1 --time=1 --signal=B:USR1@20 --chdir=farm --output="$desk/timed.log" \
+  shares.sbatch room.rt 2 timed --size 80x60 --samples 1000000 --checkpoint-every 10h)
+
+(until [ -s farm/timed/1.exr.checkpoint ]; do sleep 0.2; done; state "$timed" >timed.state) &
+pids+=($!)
 
 # One worker is lost in the middle of its share: its daemon, the step's, and what runs under it.
-wait_for 120 "a checkpoint of share 2" test -s parts/2.exr.checkpoint
+wait_for 120 "a checkpoint of share 2" test -s farm/parts/2.exr.checkpoint
 worker=$(squeue --noheader --format=%N --job="${array}_2")
 step=$(pgrep --full "slurmstepd: \[$(squeue --noheader --format=%A --job="${array}_2").batch\]")
-lost=$(pgrep --full -- "--shard auto -o parts/2.exr" | head -n 1)
+lost=$(pgrep --full -- "--shard auto/4 -o parts/2.exr" | head -n 1)
 kill -9 "${daemon[$worker]}" "$step" "$lost"
-[ ! -e parts/2.exr ] || { echo "share 2 was done before its worker was lost"; exit 1; }
+[ ! -e farm/parts/2.exr ] || { echo "share 2 was done before its worker was lost"; exit 1; }
 echo "  worker $worker is lost in the middle of share 2"
 
 # Whoever makes it again goes on from its checkpoint: asked for another picture, the same script refuses to.
-if SHARES=4 SLURM_ARRAY_TASK_ID=2 "$scripts/shares.sbatch" "$scene" parts "${flags[@]}" --seed 7 2>"$desk/other.log"; then
+if (cd farm && SLURM_ARRAY_TASK_ID=2 ./shares.sbatch room.rt 4 parts "${flags[@]}" --seed 7 2>"$desk/other.log"); then
   echo "the lost share would begin afresh"
   exit 1
 fi
 grep -q 'cannot go on from' "$desk/other.log" && grep -q 'its seed' "$desk/other.log" || { cat "$desk/other.log"; exit 1; }
 
-# Its share once more, on another; the merge when all are there.
-scancel "${array}_2"
-again=$(SHARES=4 sbatch --parsable --array=2 --exclude="$worker" --output="$desk/share-again.log" \
-  "$scripts/shares.sbatch" "$scene" parts "${flags[@]}")
-merge=$(sbatch --parsable --dependency="afterok:$again,afterok:${array}_1,afterok:${array}_3,afterok:${array}_4" \
-  --output="$desk/merge.log" "$scripts/merge.sbatch" parts all.exr)
-looked() { "$rtc" merge --partial parts/*.exr -o look.png; }
-wait_for 300 "a first share to look at" looked
-gone() { [ -z "$(squeue --noheader --job="$1" 2>/dev/null)" ]; }
-wait_for 400 "the merge, job $merge" gone "$merge"
-sed 's/^/  /' "$desk/merge.log"
+# One is preempted: it is asked to end, keeps its samples, and goes back into the queue.
+wait_for 120 "a checkpoint of share 3" test -s farm/parts/3.exr.checkpoint
+before=$(stat --format=%Y.%i farm/parts/3.exr.checkpoint)
+scontrol requeue "${array}_3"
+wait_for 60 "share 3 to wait again" grep -q interrupted "farm/slurm-${array}_3.out"
+[ "$(stat --format=%Y.%i farm/parts/3.exr.checkpoint)" != "$before" ] || { echo "SIGTERM wrote no checkpoint"; exit 1; }
+[ ! -e farm/parts/3.exr ] || { echo "share 3 was done before it was put back"; exit 1; }
+echo "  share 3 is put back into the queue"
 
+# And one is lost for good.
+wait_for 120 "a checkpoint of share 4" test -s farm/parts/4.exr.checkpoint
+scancel "${array}_4"
+[ ! -e farm/parts/4.exr ] || { echo "share 4 was done before it was cancelled"; exit 1; }
+
+again() { scontrol show job "${array}_$1" | grep -q 'Restarts=1'; }
+wait_for 90 "share 2 to be in the queue again" again 2
+echo "  Slurm has put share 2 into the queue again by itself"
+looked() { (cd farm && "$rtc" merge --partial parts/*.exr -o look.png); }
+wait_for 300 "a first share to look at" looked
+wait_for 400 "the merge, job $merge" gone "$merge"
+grep -q 'share 4 of 4 is missing' "farm/slurm-$merge.out" || { cat "farm/slurm-$merge.out"; echo "not so"; exit 1; }
+[ ! -e farm/room.exr ] || { echo "there is a picture without share 4"; exit 1; }
+echo "  the merge names the share that is missing"
+
+merge=$(submit 'array=17 shares.sbatch')
+wait_for 300 "the merge, job $merge" gone "$merge"
+sed 's/^/  /' "farm/slurm-$merge.out"
 "$rtc" build "$scene" "${flags[@]}" -j 1 -o one.exr --quiet
-cmp one.exr all.exr
+cmp one.exr farm/room.exr
 echo "  the same bytes as one process with one thread makes alone"
+
+# By now its time is up; it was told so before.
+wait_for 200 "the end of its time, job $timed" gone "$timed"
+grep -q RUNNING timed.state && grep -q interrupted timed.log || { cat timed.state timed.log; exit 1; }
+echo "  a task whose time was up kept its samples"
 
 # The line of the Kubernetes job, as a pod runs it.
 mkdir pods
@@ -152,12 +213,9 @@ cmp pods/one.exr pods/all.exr
 echo "  eight pods, to the same bytes"
 
 # A film by runs of its frames; whoever puts it together makes none of them again.
-film=("$root/examples/turntable.rt" --frames 7 --sweep "angle = 0deg until 360deg" --size 80x60 --samples 8)
-runs=$(sbatch --parsable --array=1-3 --exclude="$worker" --output="$desk/frames-%a.log" \
-  "$scripts/frames.sbatch" "${film[0]}" 7 frames "${film[@]:3}")
-wait_for 300 "the frames, job $runs" gone "$runs"
-"$rtc" build "${film[@]}" -o 'frames/{06}.exr' --resume -o farm.webp 2>film.log
-[ "$(grep -c 'is done' film.log)" = 7 ] || { echo "not all frames were done"; cat film.log; exit 1; }
-"$rtc" build "${film[@]}" -o one.webp -j 1 --quiet
-cmp one.webp farm.webp
+film=$(submit 'frames.sbatch film.rt 480')
+wait_for 300 "the film, job $film" gone "$film"
+[ "$(grep -c 'is done' "farm/slurm-$film.out")" = 7 ] || { echo "not all frames were done"; cat "farm/slurm-$film.out"; exit 1; }
+"$rtc" build farm/film.rt --frames 7 --sweep "t = 0 to 1" --samples 8 --size 80x60 -o one.webp -j 1 --quiet
+cmp one.webp farm/film.webp
 echo "  a film of seven frames in three runs, to the same bytes"

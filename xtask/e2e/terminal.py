@@ -1,4 +1,4 @@
-"""Runs the command on a pseudo-terminal: it must show its progress, and end soon after a Ctrl-C.
+"""Runs the command on a pseudo-terminal: it must show its progress, let no scene steer it, and end soon after a Ctrl-C.
 
 Usage: terminal.py RTC ROOT, in an empty folder.
 """
@@ -85,6 +85,50 @@ def colours_only_where_wanted():
         check((b"\x1b[" in shown) == coloured, f"with {environment}: {shown!r}")
 
 
+# The title of the window, the cursor's place by two ways, and the other direction of writing.
+STEERING = ["\x1b]0;pwned\x07", "\x1b[9;9H", "\x9b9;9H", "\u202e"]
+
+
+def nothing_steers_it():
+    """What a scene, and a file's name, say in a comment, a text and a param's words reaches the terminal without control characters."""
+    steering = "".join(STEERING)
+    name = "steers\x1b[9;9H.rt"
+    lines = [f"/// {steering}", f'param a: text = "{steering}"', f"// {steering}", "sphere {radius: 1m}", ""]
+    with open(name, "w") as scene:
+        scene.write("\n".join(lines))
+    small = ["--size", "4x4", "--samples", "1"]
+    for arguments in [
+        ["check", name, "no" + name],
+        ["check", "--message-format", "json", name],
+        ["check", "--set", "a=1", "--message-format", "json", name],
+        ["check", "--set", "a=1", "--message-format", "github", name],
+        ["check", "--set", "a=1", "--message-format", "sarif", name],
+        ["build", name, *small, "-o", "\x1b[9;9H.png"],
+        ["build", name, *small, "--sweep", "b = 0 to 1", "--frames", "2", "-o", "\x1b[9;9H.webp"],
+        ["fmt", "--diff", name],
+        ["fmt", "--check", name],
+        ["info", name],
+        ["info", "--json", name],
+        ["expand", name],
+        ["why", name, "0,0", *small],
+        ["why", name, "0,0", "--json", *small],
+        ["export", name, "-o", "no\x1b[9;9H/a.pbrt"],
+        ["develop", name, "-o", "a.png"],
+        ["merge", name, "-o", "a.png"],
+    ]:
+        child, terminal = start(arguments)
+        shown = read(terminal, None).decode()
+        code, _ = wait(child)
+        check(code in (0, 1, 2), f"{arguments} ended with {code}: {shown!r}")
+        for word in STEERING:
+            check(word not in shown, f"{arguments} let {word!r} through: {shown!r}")
+    with open(name) as scene:
+        check(scene.read() == "\n".join(lines), "the scene was touched")
+    for left in os.listdir("."):
+        if "\x1b" in left:
+            os.remove(left)
+
+
 def listens(child, seconds=60.0):
     """Waits until the command has taken Ctrl-C into its own hands: before that, the system ends it."""
     end = time.monotonic() + seconds
@@ -131,6 +175,7 @@ def main():
         scene.write("sphere { at: (1, 2, 3)m, radius: 10cm }\n" * 500_000)
     finishes_with_a_report()
     colours_only_where_wanted()
+    nothing_steers_it()
     with open("ball.png", "wb") as picture:
         picture.write(PICTURE)
     long = ["build", "ball.rt", "--size", "2000x2000", "--samples", "100000"]

@@ -81,11 +81,11 @@ cargo xtask lsp
 
 cargo xtask e2e [STEP…]
 
-  terminal   progress on a pseudo-terminal, and Ctrl-C
+  terminal   progress on a pseudo-terminal, scenes that would steer it, and Ctrl-C
   full-disk  a disk that fills up while a picture is written
   resume     builds that are killed 200 times and go on, to the same bytes: pictures of so many samples and of so little noise, a
              share and a film; signals while they write, and a full disk (minutes)
-  farm       four workers of a real Slurm, one of them lost midway (slurmctld, slurmd and munge, of Debian; as root)
+  farm       five workers of a real Slurm, of which one is lost midway, by the lines of its README (slurmctld, slurmd and munge, of Debian; as root)
   memory     every limit, hostile sources and files, and a million balls, each within a cap on its address space (minutes)
   dependencies what others wrote: its licences and sources, bans, checksums, versions that were taken back, which crates.io is
              asked for, and advisories where RustSec's database is at hand

@@ -71,10 +71,17 @@ fn path(targets: &[Target]) -> Option<PathBuf> {
     Some(name.into())
 }
 
-/// Looks whether a frame is done.
-pub fn find(subject: &Subject, targets: &[Target]) -> Result<Found, Problem> {
-    let Some(path) = path(targets).filter(|path| path.exists()) else { return Ok(Found::Nothing) };
-    let text = String::from_utf8(input::read_plain(&path, LARGEST)?).unwrap_or_default();
+/// Looks whether a frame is done. One whose record cannot be read is made anew: that is less than to make none behind it.
+pub fn find(subject: &Subject, targets: &[Target]) -> Found {
+    let Some(path) = path(targets) else { return Found::Nothing };
+    let read =
+        input::is_there(&path).and_then(|there| there.then(|| input::read_plain(&path, LARGEST)).transpose());
+    let bytes = match read {
+        Ok(None) => return Found::Nothing,
+        Ok(Some(bytes)) => bytes,
+        Err(problem) => return Found::Other(problem.message),
+    };
+    let text = String::from_utf8(bytes).unwrap_or_default();
     // Values may hold anything, names no colons.
     let recorded: BTreeMap<&str, &str> = text.lines().filter_map(|line| line.split_once(": ")).collect();
     let mut different = vec![];
@@ -91,15 +98,15 @@ pub fn find(subject: &Subject, targets: &[Target]) -> Result<Found, Problem> {
     }
     if !different.is_empty() {
         different.truncate(MOST_NAMED);
-        return Ok(Found::Other(format!("it differs in {}", different.join(", "))));
+        return Found::Other(format!("it differs in {}", different.join(", ")));
     }
     for target in targets {
         let written = recorded.get(file_entry(target).as_str());
         if !written.is_some_and(|written| is_as_written(&target.path, written)) {
-            return Ok(Found::Other(format!("`{}` is not the file that was made", target.path.display())));
+            return Found::Other(format!("`{}` is not the file that was made", target.path.display()));
         }
     }
-    Ok(Found::Done)
+    Found::Done
 }
 
 /// Records that a frame is done, once its files are in their places.
@@ -145,22 +152,32 @@ mod tests {
         let targets = [target.clone()];
         let subject =
             |seed: &str| -> Subject { vec![("seed".into(), seed.into()), ("camera".into(), "c".repeat(64))] };
-        assert_eq!(find(&subject("0"), &targets).unwrap(), Found::Nothing);
+        assert_eq!(find(&subject("0"), &targets), Found::Nothing);
         fs::write(&target.path, "picture").unwrap();
         record(&subject("0"), &targets, &Interrupt::default()).unwrap();
-        assert_eq!(find(&subject("0"), &targets).unwrap(), Found::Done);
+        assert_eq!(find(&subject("0"), &targets), Found::Done);
         let why = "it differs in its seed (0, not 7)";
-        assert_eq!(find(&subject("7"), &targets).unwrap(), Found::Other(why.into()));
+        assert_eq!(find(&subject("7"), &targets), Found::Other(why.into()));
         fs::write(&target.path, "torn").unwrap();
         assert!(
-            matches!(find(&subject("0"), &targets).unwrap(), Found::Other(why) if why.contains("is not the file"))
+            matches!(find(&subject("0"), &targets), Found::Other(why) if why.contains("is not the file"))
         );
         fs::write(&target.path, "another of as many bytes as it").unwrap();
         record(&subject("0"), &targets, &Interrupt::default()).unwrap();
         fs::write(&target.path, "another of as many bytes as It").unwrap();
-        assert!(matches!(find(&subject("0"), &targets).unwrap(), Found::Other(_)));
+        assert!(matches!(find(&subject("0"), &targets), Found::Other(_)));
         fs::write(path(&targets).unwrap(), [0xff, b'\n']).unwrap();
-        assert!(matches!(find(&subject("0"), &targets).unwrap(), Found::Other(_)));
-        assert_eq!(find(&subject("0"), &[]).unwrap(), Found::Nothing);
+        assert!(matches!(find(&subject("0"), &targets), Found::Other(_)));
+        // A record that is none, too large, or no file at all.
+        let record_path = path(&targets).unwrap();
+        fs::write(&record_path, vec![0; 70_000]).unwrap();
+        let large = find(&subject("0"), &targets);
+        assert!(matches!(large, Found::Other(why) if why.contains("is larger than 64.0 KiB")));
+        fs::remove_file(&record_path).unwrap();
+        fs::create_dir(&record_path).unwrap();
+        assert!(
+            matches!(find(&subject("0"), &targets), Found::Other(why) if why.contains("it is not a file"))
+        );
+        assert_eq!(find(&subject("0"), &[]), Found::Nothing);
     }
 }

@@ -24,7 +24,7 @@ use super::files::Disk;
 use super::interrupt::Interrupt;
 use super::messages::Messenger;
 use super::progress::duration;
-use super::target::Target;
+use super::target::{Target, patiently};
 use super::terminal::Terminal;
 use super::trace::{Before, Plan, Traced, trace};
 use super::{Exit, Problem, input, keep, scene as scenes};
@@ -43,7 +43,7 @@ use sink::Sink;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Makes the frames in turn, and the films that they are in.
 pub fn run(arguments: &Build, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
@@ -130,17 +130,47 @@ impl Studio<'_, '_> {
         let lines = if self.context.arguments.quiet { &[][..] } else { &first.notes };
         lines.iter().for_each(|note| self.context.terminal.line(note));
         drop(first);
+        // Frames that others are making come last, but for a film, which wants them in turn.
+        let (mut busy, wait) = (vec![], self.context.arguments.keeping.wait.unwrap_or_default());
         for &number in &orders.numbers {
-            let (picture, facts) = match self.frame(number)? {
-                Shot::Made(picture, facts) => (picture, facts),
-                Shot::There(_) if films.is_empty() => continue,
-                Shot::There(targets) => read(&targets)?,
-                Shot::Failed => return Ok(None),
-            };
-            let threads = &self.context.threads;
-            threads.install(|| films.iter_mut().try_for_each(|film| film.add(&picture, &facts)))?;
+            let patience = if films.is_empty() { Duration::ZERO } else { wait };
+            match self.add(number, patience, &mut films) {
+                Err(problem) if problem.busy && films.is_empty() => busy.push(number),
+                Ok(true) => {}
+                Ok(false) => return Ok(None),
+                Err(problem) => return Err(problem),
+            }
         }
-        films.into_iter().map(Sink::finish).collect::<Result<_, _>>().map(Some)
+        let (start, mut failed) = (Instant::now(), None);
+        for number in busy {
+            match self.add(number, wait.saturating_sub(start.elapsed()), &mut films) {
+                Err(problem) if problem.busy => failed = failed.or(Some(problem)),
+                Ok(true) => {}
+                Ok(false) => return Ok(None),
+                Err(problem) => return Err(problem),
+            }
+        }
+        match failed {
+            Some(problem) => Err(problem),
+            None => films.into_iter().map(Sink::finish).collect::<Result<_, _>>().map(Some),
+        }
+    }
+
+    /// Makes a frame, unless it is done, and adds it to the films. Whether the scene has no errors.
+    fn add(&mut self, number: u32, patience: Duration, films: &mut [Sink]) -> Result<bool, Problem> {
+        let Context { terminal, ref threads, .. } = *self.context;
+        let (picture, facts) = match patiently(patience, terminal, || self.frame(number))? {
+            Shot::Made(picture, facts) => (picture, facts),
+            Shot::There(_) if films.is_empty() => return Ok(true),
+            Shot::There(targets) => read(&targets)?,
+            Shot::Failed => return Ok(false),
+        };
+        for film in films {
+            if let Some(warning) = threads.install(|| film.add(&picture, &facts))? {
+                terminal.line(&format!("warning: {warning}"));
+            }
+        }
+        Ok(true)
     }
 
     /// Compiles a frame, and says of it what was not said of another. None where it has errors.
@@ -210,7 +240,7 @@ impl Studio<'_, '_> {
         let subject = mark::subject(scene, &plan, &arguments.aov, depth);
         let mut anew = String::new();
         if keeping.keeps() && keeping.resume != Some(Resume::Never) {
-            match mark::find(&subject, &targets)? {
+            match mark::find(&subject, &targets) {
                 Found::Nothing => {}
                 Found::Other(why) => anew = format!(", made anew: {why}"),
                 Found::Done => {
@@ -228,7 +258,9 @@ impl Studio<'_, '_> {
         threads
             .install(|| build::write(traced.versions(), &traced.facts, &traced.channels, depth, staged))?;
         if keeping.keeps() {
-            mark::record(&subject, &targets, interrupt)?;
+            if let Err(problem) = mark::record(&subject, &targets, interrupt) {
+                terminal.problem(&problem.help("the frame is made; asked for again, it is made anew"));
+            }
             // What is done needs no samples any more.
             let _ = fs::remove_file(keep::beside(&targets)?);
         }

@@ -45,6 +45,10 @@ impl Output {
     /// Reads the value of `-o`.
     pub fn from_argument(path: &Path) -> Result<Output, Problem> {
         let text = path.to_string_lossy();
+        if path.to_str().is_none() && Pattern::in_name(&text)?.is_some() {
+            let problem = Problem::new(format!("`{text}` is not UTF-8, so no frame's number can be put in"));
+            return Err(problem.help("give the folder another name, or go into it and leave it out"));
+        }
         let form = Form::of(path);
         match (Pattern::in_name(&text)?, form) {
             (Some(_), Some(Form::Video(_))) => {
@@ -127,8 +131,37 @@ const FORMS: &str =
     "films are apng, webp, mp4, mov, mkv and webm; a picture a frame has its number: `-o frame.{04}.png`";
 
 impl Pattern {
-    /// The pattern of a name; none where it has no braces.
+    /// The pattern of a path; none where it has no braces. Folders may be called whatever they are: theirs are the place of a
+    /// number only where they look it.
     fn in_name(text: &str) -> Result<Option<Pattern>, Problem> {
+        let start = text.rfind(std::path::is_separator).map_or(0, |at| at + 1);
+        let (folders, name) = text.split_at(start);
+        let in_folders = Pattern::in_folders(folders);
+        let in_file = Pattern::in_file(name)?;
+        match (in_folders, in_file) {
+            (Some(pattern), in_file) => {
+                if in_file.is_some() || Pattern::in_folders(&pattern.after).is_some() {
+                    return Err(two_places(text));
+                }
+                Ok(Some(Pattern { after: pattern.after + name, ..pattern }))
+            }
+            (None, in_file) => {
+                Ok(in_file
+                    .map(|pattern| Pattern { before: format!("{folders}{}", pattern.before), ..pattern }))
+            }
+        }
+    }
+
+    /// The first place of a number in the names of folders.
+    fn in_folders(text: &str) -> Option<Pattern> {
+        text.match_indices('{').find_map(|(at, _)| {
+            let (inside, after) = text[at + 1..].split_once('}')?;
+            let width = digits(inside)?;
+            Some(Pattern { before: text[..at].into(), width, after: after.into() })
+        })
+    }
+
+    fn in_file(text: &str) -> Result<Option<Pattern>, Problem> {
         if let Some(foreign) = foreign(text) {
             let problem = Problem::new(format!("`{foreign}` is no place for a frame's number"));
             return Err(problem.help("write `{04}`: four digits, with zeros before"));
@@ -139,12 +172,9 @@ impl Pattern {
             return Err(problem.help("the place of a frame's number is `{04}`"));
         };
         if after.contains('{') {
-            let problem = Problem::new(format!("`{text}` has two places for the frame's number"));
-            return Err(problem.help("keep one of them"));
+            return Err(two_places(text));
         }
-        let digits = inside.is_empty() || inside.bytes().all(|byte| byte.is_ascii_digit());
-        let width = if inside.is_empty() { Some(1) } else { inside.parse().ok() };
-        match width.filter(|width| digits && (1..=MOST_DIGITS).contains(width)) {
+        match digits(inside) {
             Some(width) => Ok(Some(Pattern { before: before.into(), width, after: after.into() })),
             None => {
                 let problem = Problem::new(format!("`{{{inside}}}` is no place for a frame's number"));
@@ -194,6 +224,17 @@ impl Pattern {
     }
 }
 
+/// How many digits braces ask for, if they are the place of a number.
+fn digits(inside: &str) -> Option<usize> {
+    let all = inside.bytes().all(|byte| byte.is_ascii_digit());
+    let width = if inside.is_empty() { Some(1) } else { inside.parse().ok() };
+    width.filter(|width| all && (1..=MOST_DIGITS).contains(width))
+}
+
+fn two_places(text: &str) -> Problem {
+    Problem::new(format!("`{text}` has two places for the frame's number")).help("keep one of them")
+}
+
 /// Whether a name has the place of a frame's number, so that frames were probably meant.
 pub fn has_number(path: &Path) -> bool {
     path.to_str().is_some_and(|text| matches!(Pattern::in_name(text), Ok(Some(_))))
@@ -230,6 +271,20 @@ mod tests {
         assert_eq!(path("out.{04}.exr"), "out.0007.exr");
         assert_eq!(path("{}.png"), "7.png");
         assert_eq!(path("a{2}b/c.jpg"), "a07b/c.jpg");
+        // Folders are called as they are.
+        assert_eq!(path("100%done/{a}/##/%04d/f{}.png"), "100%done/{a}/##/%04d/f7.png");
+        assert_eq!(path("{a/{b}/{3}/c.png"), "{a/{b}/007/c.png");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_is_no_text_is_not_written_as_another_name() {
+        use std::os::unix::ffi::OsStrExt;
+        let path = |bytes: &'static [u8]| Path::new(std::ffi::OsStr::from_bytes(bytes));
+        let refused = Output::from_argument(path(b"q\xff{}.png")).unwrap_err();
+        assert!(refused.message.contains("is not UTF-8"), "{}", refused.message);
+        let film = Output::from_argument(path(b"q\xff.webp")).unwrap();
+        assert_eq!(film, Output::Film(path(b"q\xff.webp").into(), Form::Own(Motion::WebP)));
     }
 
     #[cfg(unix)]
@@ -256,7 +311,7 @@ mod tests {
             Ok(Output::Film(_, form)) => form,
             other => panic!("{text}: {other:?}"),
         };
-        for apng in ["a.apng", "a.png", "A.PNG", "-", "png:-"] {
+        for apng in ["100%done/{a}/a.apng", "a.apng", "a.png", "A.PNG", "-", "png:-"] {
             assert_eq!(film(apng), Form::Own(Motion::Apng), "{apng}");
         }
         assert_eq!((film("a.webp"), film("webp:-")), (Form::Own(Motion::WebP), Form::Own(Motion::WebP)));
@@ -268,6 +323,8 @@ mod tests {
         for (name, message, help) in [
             ("out.exr", "the one picture `out.exr`", "-o out.{04}.exr"),
             ("out.{04}.{04}.exr", "two places", "keep one"),
+            ("{04}/{04}.exr", "two places", "keep one"),
+            ("{04}/{}/a.exr", "two places", "keep one"),
             ("out.{04.png", "is not closed", "{04}"),
             ("out.{x}.png", "`{x}` is no place", "{04}"),
             ("out.{99}.png", "`{99}` is no place", "{04}"),

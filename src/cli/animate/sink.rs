@@ -2,14 +2,14 @@
 
 use super::super::input::is_standard;
 use super::super::interrupt::Interrupt;
-use super::super::target::{Aside, Staged, Target};
+use super::super::target::{Aside, Target, print};
 use super::super::{Problem, plain};
 use super::names::{Form, place};
 use super::video::{self, Video};
 use rt_lang::output::animation::{Animation, CannotFilm, Reel};
 use rt_lang::output::{Depth, Facts, Format, Picture};
 use std::fs::File;
-use std::io::{BufWriter, Read, Seek};
+use std::io::{BufWriter, Seek};
 use std::path::Path;
 
 /// A film that is being made.
@@ -23,13 +23,15 @@ pub struct Sink {
     interrupt: Interrupt,
     /// None before the first frame.
     work: Option<Work>,
+    /// Whether it was said that it will be too large.
+    warned: bool,
 }
 
 enum Place {
     /// Beside where it will be.
     Aside(Aside),
     /// To be sent to standard output, from a file without a name.
-    Standard(Staged, File),
+    Standard(File),
 }
 
 enum Work {
@@ -58,19 +60,20 @@ impl Sink {
             video::find(&name)?;
         }
         let place = if is_standard(&to) {
-            let staged = Target { path: to, format: Format::Png }.stage(interrupt)?;
+            // Refused where it is a terminal.
+            Target { path: to, format: Format::Png }.stage(interrupt)?;
             let file = tempfile::tempfile().map_err(|error| cannot(&name, &plain(&error)))?;
-            Place::Standard(staged, file)
+            Place::Standard(file)
         } else if keeps {
             Place::Aside(Aside::always_beside(&to, interrupt)?)
         } else {
             Place::Aside(Aside::beside(&to, interrupt)?)
         };
-        Ok(Sink { name, form, reel, depth, place, interrupt: interrupt.clone(), work: None })
+        Ok(Sink { name, form, reel, depth, place, interrupt: interrupt.clone(), work: None, warned: false })
     }
 
-    /// Adds a frame.
-    pub fn add(&mut self, picture: &Picture, facts: &Facts) -> Result<(), Problem> {
+    /// Adds a frame. Gives what is to be feared of those to come, once.
+    pub fn add(&mut self, picture: &Picture, facts: &Facts) -> Result<Option<String>, Problem> {
         let work = match self.work.take() {
             Some(work) => work,
             None => self.begin()?,
@@ -78,11 +81,20 @@ impl Sink {
         let name = &self.name;
         match self.work.insert(work) {
             Work::Own(animation) => {
-                animation.add(picture, facts).map_err(|error| cannot(name, &reason(error)))
+                animation.add(picture, facts).map_err(|error| cannot(name, &reason(error)))?;
+                let fitting = animation.fitting().filter(|_| !self.warned);
+                self.warned |= fitting.is_some();
+                Ok(fitting.map(|fitting| {
+                    let of = self.reel.frames;
+                    format!(
+                        "`{name}` can be 4 GiB large at most, and that is about {fitting} frames like those so far, not {of}; \
+                         `-o film.apng` and videos have no such end, and `--resume` keeps the frames"
+                    )
+                }))
             }
             Work::Video(video) => {
                 let frame = self.reel.raw(picture, facts);
-                video.add(&frame.map_err(|reason| cannot(name, &reason.to_string()))?)
+                video.add(&frame.map_err(|reason| cannot(name, &reason.to_string()))?).map(|()| None)
             }
         }
     }
@@ -92,7 +104,7 @@ impl Sink {
             (Form::Own(motion), place) => {
                 let file = match place {
                     Place::Aside(aside) => aside.file(),
-                    Place::Standard(_, file) => file.try_clone(),
+                    Place::Standard(file) => file.try_clone(),
                 };
                 let to = BufWriter::new(file.map_err(|error| cannot(&self.name, &plain(&error)))?);
                 let animation = Animation::begin(motion, self.reel, self.depth, to);
@@ -121,12 +133,9 @@ impl Sink {
                 aside.sync()?;
                 aside.finish()?;
             }
-            Place::Standard(mut staged, mut file) => {
-                let mut bytes = vec![];
-                let read = file.rewind().and_then(|()| file.read_to_end(&mut bytes));
-                read.map_err(|error| cannot(&name, &plain(&error)))?;
-                staged.write(&bytes)?;
-                staged.finish()?;
+            Place::Standard(mut file) => {
+                file.rewind().map_err(|error| cannot(&name, &plain(&error)))?;
+                print(file)?;
             }
         }
         let ([width, height], frames) = (reel.size, reel.frames);

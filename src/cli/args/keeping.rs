@@ -37,6 +37,11 @@ pub struct Keeping {
         default_missing_value = "auto", value_parser = resume)]
     pub resume: Option<Resume>,
 
+    /// Waits for so long while another process is writing the same picture, share or frame, and then goes on from what that one
+    /// has left. Without it, that is an error.
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    pub wait: Option<Duration>,
+
     /// Makes one of N shares of the samples, all of the picture with fewer of them, as an EXR for `rtc merge`: `2/8`. `auto`
     /// takes both from a Slurm job array 1-N, `auto/N` the first from Slurm's or Kubernetes' index.
     #[arg(long, value_name = "I/N|auto", value_parser = share)]

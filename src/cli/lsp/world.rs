@@ -172,7 +172,7 @@ impl Files for World {
             },
             (None, Some(disk)) => disk.read(path, most),
             // Nothing is beside a text that is no file.
-            (None, None) if self.names.base.as_os_str().is_empty() => {
+            (None, None) if self.base.as_os_str().is_empty() => {
                 Err(FileError::Unreadable("this text has no folder yet; save it first".into()))
             }
             (None, None) => Err(FileError::Missing),
