@@ -193,12 +193,13 @@ mod tests {
     }
 
     #[test]
-    fn what_is_brighter_than_white_keeps_its_hue_and_is_not_written() {
+    fn what_is_brighter_than_white_keeps_its_hue_and_is_written_by_its_channels() {
         let color = |r, g, b| DVec3::new(r, g, b);
         assert_eq!(hex(displayed(color(2.0, 1.0, 0.0))), hex(displayed(color(1.0, 0.5, 0.0))));
-        assert_eq!(value(&Seen::Color(color(2.0, 1.0, 0.0)), None), None);
-        assert_eq!(value(&Seen::Color(color(1.0, -0.1, 0.0)), None), None);
-        assert_eq!(value(&Seen::Color(color(1.0, 0.0, 0.0)), None).as_deref(), Some("#ff0000"));
+        let written = |color| value(&Seen::Color(color), None);
+        assert_eq!(written(color(2.0, 1.0, 0.0)).as_deref(), Some("rgb(2, 1, 0)"));
+        assert_eq!(written(color(1.0, -0.1, 0.0)), None);
+        assert_eq!(written(color(1.0, 0.0, 0.0)).as_deref(), Some("#ff0000"));
         assert_eq!(hex([-1.0, 2.0, f64::NAN]), "#00ff00");
     }
 }

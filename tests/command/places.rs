@@ -117,7 +117,8 @@ mod on_unix {
 
     /// Begins a picture without end, and waits until its file has this name.
     fn begin(desk: &Desk, output: &str, aside: &str) -> Child {
-        let arguments = format!("build ball.rt --size 400x300 --samples 1000000 -o {output} --checkpoint");
+        let arguments =
+            format!("build ball.rt --size 400x300 --samples 1000000 -o {output} --checkpoint --resume=never");
         let mut child = desk.command(&arguments).stderr(Stdio::null()).spawn().unwrap();
         while !desk.names().contains(&aside.to_string()) {
             assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
