@@ -3,8 +3,8 @@
 use super::Problem;
 use super::args::Build;
 use rayon::prelude::*;
-use rt_lang::denoise::{Noisy, denoise};
-use rt_lang::output::{Channels, DENOISED, Picture, Plane};
+use rt_lang::denoise::{Clean, Noisy, denoise};
+use rt_lang::output::{Channels, DENOISED, DENOISED_ALPHA, Picture, Plane};
 use rt_lang::render::first::Guides;
 use rt_lang::render::making::Making;
 use rt_lang::render::{Film, Window};
@@ -57,22 +57,30 @@ pub fn refuse_samples(arguments: &Build, most: u32) -> Result<(), Problem> {
 /// Takes the noise out of a picture that is traced in halves; the time counts from the start that is given.
 pub fn denoised(picture: &Picture, making: &Making, guides: Guides, start: Instant) -> Option<Denoised> {
     let film = making.film();
-    let halves = making.halves()?.map(|half| means(&half));
+    let films = making.halves()?;
+    let share = over(film, |x, y| films[0].samples(x, y) as f32 / film.samples(x, y) as f32);
+    let alpha = picture
+        .alpha
+        .as_ref()
+        .map(|_| films.each_ref().map(|half| over(half, |x, y| half.alpha(x, y) as f32)));
+    let halves = films.each_ref().map(means);
+    drop(films);
     let variance = over(film, |x, y| {
         let error = film.error(x, y);
         (error * error) as f32
     });
-    let noisy = Noisy { size: picture.size, halves, variance, guides };
-    let mut pixels = denoise(&noisy);
+    let noisy = Noisy { size: picture.size, halves, alpha, share, variance, guides };
+    let Clean { mut pixels, mut alpha } = denoise(&noisy);
     // Where nothing is covered, there is nothing to denoise.
-    if let Some(alpha) = &picture.alpha {
-        for ((pixel, traced), alpha) in pixels.iter_mut().zip(&picture.pixels).zip(alpha) {
-            if *alpha == 0.0 {
-                *pixel = *traced;
+    if let (Some(alpha), Some(covered)) = (&mut alpha, &picture.alpha) {
+        let traced = picture.pixels.iter().zip(covered);
+        for ((pixel, alpha), (traced, covered)) in pixels.iter_mut().zip(alpha).zip(traced) {
+            if *covered == 0.0 {
+                (*pixel, *alpha) = (*traced, 0.0);
             }
         }
     }
-    Some(Denoised { picture: Picture { pixels, ..picture.clone() }, time: start.elapsed() })
+    Some(Denoised { picture: Picture { pixels, alpha, ..picture.clone() }, time: start.elapsed() })
 }
 
 /// The picture as a layer of an EXR.
@@ -80,6 +88,9 @@ pub fn layer(picture: &Picture, channels: &mut Channels) {
     for (channel, name) in DENOISED.into_iter().enumerate() {
         let values = picture.pixels.iter().map(|pixel| pixel[channel]).collect();
         channels.planes.push(Plane { name: name.into(), values });
+    }
+    if let Some(values) = picture.alpha.clone() {
+        channels.planes.push(Plane { name: DENOISED_ALPHA.into(), values });
     }
 }
 

@@ -1,11 +1,12 @@
 //! `rtc develop`: an EXR to other forms, without tracing.
 
 use super::args::Develop;
+use super::build::Versions;
 use super::interrupt::Interrupt;
 use super::target::Staged;
 use super::terminal::Terminal;
 use super::{Exit, Problem, build, input};
-use rt_lang::output::{Channels, MOST_PIXELS, decode_exr, decode_shown};
+use rt_lang::output::{Channels, MOST_PIXELS, decode_denoised, decode_exr};
 
 /// The largest EXR that is read: the most pixels, uncompressed, with a channel to spare.
 const LARGEST: u64 = MOST_PIXELS * 16;
@@ -16,18 +17,19 @@ pub fn run(arguments: &Develop, terminal: Terminal, interrupt: &Interrupt) -> Re
     build::refuse_inputs_as_outputs(std::slice::from_ref(&arguments.input), &build::paths(&targets))?;
     build::refuse_idle_depth(arguments.look.bits, &targets)?;
     let bytes = input::read_bytes(&arguments.input, LARGEST)?;
-    let decoded = match arguments.noisy {
-        true => decode_exr(&bytes),
-        false => decode_shown(&bytes),
-    };
-    let (picture, mut facts) = decoded.map_err(|reason| {
+    let decoded = decode_exr(&bytes).and_then(|(picture, facts)| {
+        let denoised = if arguments.noisy { None } else { decode_denoised(&bytes)? };
+        Ok((picture, denoised, facts))
+    });
+    let (picture, denoised, mut facts) = decoded.map_err(|reason| {
         Problem::new(format!("`{}` is not an EXR that can be developed: {reason}", arguments.input.display()))
             .help("`rtc build scene.rt -o scene.exr` makes one")
     })?;
     facts.stops = arguments.exposure.or(facts.stops);
     facts.tonemap = arguments.look.tonemap.or(facts.tonemap);
     let staged: Result<Vec<Staged>, Problem> = targets.iter().map(|target| target.stage(interrupt)).collect();
-    build::write(&picture, &facts, &Channels::default(), arguments.look.bits, staged?)?;
+    let versions = Versions { traced: &picture, denoised: denoised.as_ref() };
+    build::write(versions, &facts, &Channels::default(), arguments.look.bits, staged?)?;
     if !arguments.quiet {
         let [width, height] = picture.size;
         let stops = facts.stops.unwrap_or(0.0);

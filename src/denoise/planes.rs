@@ -48,6 +48,12 @@ impl Planes {
         Planes { size: self.size, planes: self.planes.par_iter().zip(&other.planes).map(plane).collect() }
     }
 
+    /// Every number made out of itself and the one that its pixel has in a list.
+    pub(super) fn scaled(&self, by: &[f32], made: impl Fn(f32, f32) -> f32 + Sync) -> Planes {
+        let plane = |plane: &Vec<f32>| plane.iter().zip(by).map(|(v, by)| made(*v, *by)).collect();
+        Planes { size: self.size, planes: self.planes.par_iter().map(plane).collect() }
+    }
+
     /// The mean over squares of so many pixels to every side, of those that there are.
     pub(super) fn blurred(&self, radius: usize) -> Planes {
         let planes = self.planes.par_iter().map(|plane| blurred(plane, self.size, radius));

@@ -35,7 +35,13 @@ fn noisy(noise: f32, shows: impl Fn(f32, f32) -> ([f32; 3], [f32; FEATURES])) ->
         variance.push((noise * luminance) * (noise * luminance));
         truth.push(color);
     }
-    (Noisy { size: SIZE, halves, variance, guides }, truth)
+    let share = vec![0.5; truth.len()];
+    (Noisy { size: SIZE, halves, alpha: None, share, variance, guides }, truth)
+}
+
+/// The colours without noise.
+fn clean(noisy: &Noisy) -> Vec<[f32; 3]> {
+    denoise(noisy).pixels
 }
 
 /// The mean of the squared relative differences.
@@ -57,18 +63,18 @@ fn mean(noisy: &Noisy) -> Vec<[f32; 3]> {
 #[test]
 fn what_has_no_noise_stays_as_it_is() {
     let (even, truth) = noisy(0.0, |_, _| ([3.0, 0.5, 1e-3], [0.0; FEATURES]));
-    assert!(greatest_error(&denoise(&even), &truth) < 1e-5);
+    assert!(greatest_error(&clean(&even), &truth) < 1e-5);
     // Also where no feature tells why colours differ.
     let (pattern, truth) =
         noisy(0.0, |x, y| ([0.2 + (x * 0.7).fract() + (y * 0.3).fract(); 3], [0.0; FEATURES]));
-    assert!(greatest_error(&denoise(&pattern), &truth) < 1e-3);
+    assert!(greatest_error(&clean(&pattern), &truth) < 1e-3);
 }
 
 #[test]
 fn noise_on_one_colour_goes_away() {
     for (noise, gain) in [(0.5, 50.0), (0.1, 50.0), (0.01, 50.0)] {
         let (noisy, truth) = noisy(noise, |_, _| ([1.0, 0.5, 0.25], [0.0; FEATURES]));
-        let (before, after) = (error(&mean(&noisy), &truth), error(&denoise(&noisy), &truth));
+        let (before, after) = (error(&mean(&noisy), &truth), error(&clean(&noisy), &truth));
         assert!((before / (noise * noise) - 1.0).abs() < 0.2, "{before} of {noise}");
         assert!(after * gain < before, "{before} became {after}");
     }
@@ -83,7 +89,7 @@ fn what_a_feature_parts_stays_apart() {
         ([0.2 + right; 3], features)
     };
     let (noisy, truth) = noisy(0.4, edge);
-    let picture = denoise(&noisy);
+    let picture = clean(&noisy);
     assert!(greatest_error(&picture, &truth) < 0.15, "{}", greatest_error(&picture, &truth));
     let [left, right] = [19, 20].map(|x| picture[18 * 40 + x][1]);
     assert!(right - left > 0.9, "{left} beside {right}");
@@ -97,10 +103,10 @@ fn what_is_linear_in_a_feature_is_kept_exactly() {
         ([1.0 + features[0] + features[4], 2.0 - features[0], 1.0 + 0.5 * features[4]], features)
     };
     let (even, truth) = noisy(0.0, slope);
-    assert!(greatest_error(&denoise(&even), &truth) < 1e-3);
+    assert!(greatest_error(&clean(&even), &truth) < 1e-3);
     // A texture that is far finer than what is compared comes out of the noise.
     let (noisy, truth) = noisy(0.2, slope);
-    let (before, after) = (error(&mean(&noisy), &truth), error(&denoise(&noisy), &truth));
+    let (before, after) = (error(&mean(&noisy), &truth), error(&clean(&noisy), &truth));
     assert!(after * 15.0 < before, "{before} became {after}");
 }
 
@@ -109,22 +115,105 @@ fn a_firefly_is_not_spread() {
     let (mut noisy, truth) = noisy(0.1, |_, _| ([1.0; 3], [0.0; FEATURES]));
     noisy.halves[0][18 * 40 + 20] = [1000.0; 3];
     noisy.variance[18 * 40 + 20] = 250_000.0;
-    assert!(greatest_error(&denoise(&noisy), &truth) < 0.2);
+    assert!(greatest_error(&clean(&noisy), &truth) < 0.2);
     // What is in both halves is there.
     noisy.halves[1][18 * 40 + 20] = [1000.0; 3];
     noisy.variance[18 * 40 + 20] = 1.0;
-    assert!(denoise(&noisy)[18 * 40 + 20][0] > 900.0);
+    assert!(clean(&noisy)[18 * 40 + 20][0] > 900.0);
+}
+
+#[test]
+fn around_a_firefly_noise_is_known_as_elsewhere() {
+    let (mut noisy, _) = noisy(0.1, |_, _| ([1.0; 3], [0.0; FEATURES]));
+    for v in [100.0f32, 1e4] {
+        noisy.halves[0][18 * 40 + 20] = [v; 3];
+        noisy.variance[18 * 40 + 20] = 0.25 * v * v;
+        let size = SIZE.map(|side| side as usize);
+        let (halves, left) = noise::halves(&noisy.halves, size, 1.0);
+        let variance = noise::variance(&halves, &noisy.share, &noisy.variance, &left, 1.0);
+        let far = variance.planes[1][6 * 40 + 6];
+        for (x, y) in (15..26).flat_map(|x| (13..24).map(move |y| (x, y))) {
+            let near = variance.planes[1][y * 40 + x];
+            assert!(near > 0.3 * far, "at ({x}, {y}) {near} and far away {far}");
+        }
+    }
+}
+
+#[test]
+fn a_lamp_in_view_changes_nothing_else() {
+    let edge = |x: f32, _: f32| ([if x < 20.0 { 1.0 } else { 1.3 }; 3], [0.0; FEATURES]);
+    let (mut noisy, truth) = noisy(0.05, edge);
+    let without = clean(&noisy);
+    assert!(error(&without, &truth) < 0.3 * error(&mean(&noisy), &truth));
+    let is_lamp = |index: usize| (2..6).contains(&(index % 40)) && (3..7).contains(&(index / 40));
+    for index in (0..truth.len()).filter(|index| is_lamp(*index)) {
+        noisy.halves.iter_mut().for_each(|half| half[index] = [1e6; 3]);
+        noisy.variance[index] = 0.0;
+    }
+    let picture = clean(&noisy);
+    for (index, (with, without)) in picture.iter().zip(&without).enumerate() {
+        if is_lamp(index) {
+            assert!(with[0] > 0.99e6, "{index}: {with:?}");
+        } else if !(index % 40 < 20 && index / 40 < 20) {
+            assert!((with[0] - without[0]).abs() < 0.01, "{index}: {with:?} was {without:?}");
+        } else {
+            assert!((with[0] - 1.0).abs() < 0.2, "{index}: {with:?} was {without:?}");
+        }
+    }
+}
+
+#[test]
+fn what_covers_a_pixel_in_part_keeps_its_colour() {
+    // A ball of one colour without noise, but for what of each pixel at its edge it covers.
+    let mut numbers = Numbers(3);
+    let (mut noisy, _) = noisy(0.0, |_, _| ([0.0; 3], [0.0; FEATURES]));
+    let mut alpha = [vec![], vec![]];
+    for index in 0..40 * 36 {
+        let (x, y) = ((index % 40) as f32 - 19.5, (index / 40) as f32 - 17.5);
+        let covered = (12.5 - (x * x + y * y).sqrt()).clamp(0.0, 1.0);
+        for (half, alpha) in alpha.iter_mut().enumerate() {
+            let share = (0..4).filter(|_| numbers.next() < covered).count() as f32 / 4.0;
+            noisy.halves[half][index] = [0.8 * share, 0.4 * share, 0.2 * share];
+            noisy.guides[half][index][2] = share;
+            alpha.push(share);
+        }
+        noisy.variance[index] = covered * (1.0 - covered) / 8.0;
+    }
+    noisy.alpha = Some(alpha);
+    let Clean { pixels, alpha } = denoise(&noisy);
+    let alpha = alpha.expect("it had one");
+    for (pixel, alpha) in pixels.iter().zip(&alpha).filter(|(_, alpha)| **alpha > 0.05) {
+        for (v, color) in pixel.iter().zip([0.8, 0.4, 0.2]) {
+            assert!((v / alpha / color - 1.0).abs() < 0.02, "{pixel:?} of {alpha}");
+        }
+    }
+    assert!((alpha[18 * 40 + 20] - 1.0).abs() < 1e-3 && alpha[0] < 1e-3);
+}
+
+#[test]
+fn halves_of_different_size_count_by_their_samples() {
+    // One part has a third of the samples, so it is noisier.
+    let (even, truth) = noisy(0.3, |_, _| ([1.0; 3], [0.0; FEATURES]));
+    let mut uneven = even.clone();
+    let toward = |half: &mut Vec<[f32; 3]>, factor: f32| {
+        half.iter_mut().flatten().for_each(|v| *v = 1.0 + (*v - 1.0) * factor);
+    };
+    toward(&mut uneven.halves[0], (0.5f32 / (1.0 / 3.0)).sqrt());
+    toward(&mut uneven.halves[1], (0.5f32 / (2.0 / 3.0)).sqrt());
+    uneven.share = vec![1.0 / 3.0; truth.len()];
+    let (of_even, of_uneven) = (error(&clean(&even), &truth), error(&clean(&uneven), &truth));
+    assert!(of_uneven < 2.0 * of_even, "{of_uneven} and {of_even}");
 }
 
 #[test]
 fn the_unit_makes_no_difference() {
     let (noisy, _) = noisy(0.3, |x, _| ([1.0 + (x / 7.0).floor(), 1.0, 0.5], [0.0; FEATURES]));
-    let picture = denoise(&noisy);
+    let picture = clean(&noisy);
     for unit in [1e-9f32, 1e9] {
         let halves =
             noisy.halves.clone().map(|half| half.into_iter().map(|pixel| pixel.map(|v| v * unit)).collect());
         let variance = noisy.variance.iter().map(|v| v * unit * unit).collect();
-        let other = denoise(&Noisy { halves, variance, ..noisy.clone() });
+        let other = clean(&Noisy { halves, variance, ..noisy.clone() });
         let back: Vec<[f32; 3]> = other.iter().map(|pixel| pixel.map(|v| v / unit)).collect();
         assert!(greatest_error(&back, &picture) < 1e-3, "{unit}");
     }
@@ -158,16 +247,22 @@ fn anything_may_come_in() {
                 || (0..pixels).map(|_| std::array::from_fn(|_| any())).collect::<Vec<[f32; FEATURES]>>();
             let guides = [guide(), guide()];
             let variance = (0..pixels).map(|_| any()).collect();
-            let picture = denoise(&Noisy { size, halves, variance, guides });
-            assert_eq!(picture.len(), pixels);
-            assert!(picture.iter().flatten().all(|v| v.is_finite() && *v >= 0.0), "{size:?}");
+            let mut list = || (0..pixels).map(|_| any()).collect::<Vec<f32>>();
+            let (share, alpha) = (list(), (seed % 2 == 0).then(|| [list(), list()]));
+            let clean = denoise(&Noisy { size, halves, alpha, share, variance, guides });
+            assert_eq!(clean.pixels.len(), pixels);
+            assert_eq!(clean.alpha.as_ref().map(Vec::len), (seed % 2 == 0).then_some(pixels));
+            assert!(clean.pixels.iter().flatten().all(|v| v.is_finite() && *v >= 0.0), "{size:?}");
+            assert!(clean.alpha.iter().flatten().all(|v| (0.0..=1.0).contains(v)), "{size:?}");
         }
     }
     let black = Noisy {
         size: [3, 3],
         halves: [vec![[0.0; 3]; 9], vec![[0.0; 3]; 9]],
+        alpha: None,
+        share: vec![0.5; 9],
         variance: vec![0.0; 9],
         guides: [vec![[0.0; FEATURES]; 9], vec![[0.0; FEATURES]; 9]],
     };
-    assert_eq!(denoise(&black), vec![[0.0; 3]; 9]);
+    assert_eq!(clean(&black), vec![[0.0; 3]; 9]);
 }

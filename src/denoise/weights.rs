@@ -7,9 +7,6 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f32x16};
 use rayon::prelude::*;
 
-/// Variance that is nothing, of numbers about 1: below it, differences count as they are.
-const LEAST_VARIANCE: f32 = 1e-8;
-
 /// Which pixels are compared, and how strictly.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Kernel {
@@ -186,7 +183,7 @@ fn sum<S: Simd>(simd: S, numbers: &[f32], step: usize, count: usize, sums: &mut 
 /// How many times more than by noise two numbers differ, squared: about 0 if by noise alone.
 #[inline(always)]
 fn distance(difference: f32, a: f32, b: f32, strictness: f32) -> f32 {
-    (difference * difference - (a + a.min(b))) * strictness / (LEAST_VARIANCE + (a + b))
+    (difference * difference - (a + a.min(b))) * strictness / (f32::MIN_POSITIVE + (a + b))
 }
 
 /// About e to the power −x, and 1 below 0: (1 − x/256)²⁵⁶, of which nothing is left at 256.

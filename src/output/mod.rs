@@ -16,7 +16,9 @@ use crate::scene::Tonemap;
 use rayon::prelude::*;
 use std::fmt;
 
-pub use openexr::{DENOISED, decode as decode_exr, decode_head, decode_shown, decode_words};
+pub use openexr::{
+    DENOISED, DENOISED_ALPHA, decode as decode_exr, decode_denoised, decode_head, decode_shown, decode_words,
+};
 
 /// The most pixels a picture in memory may have: 16384 × 8192.
 pub const MOST_PIXELS: u64 = 1 << 27;

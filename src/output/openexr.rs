@@ -131,24 +131,35 @@ fn sort_header(file: &mut [u8]) -> Option<()> {
 /// infinite the greatest finite value.
 pub fn decode(file: &[u8]) -> Result<(Picture, Facts), CannotDecode> {
     refuse_large(file)?;
-    decode_colors(file, ["R", "G", "B"])
+    decode_colors(file, ["R", "G", "B"], "A")
 }
 
 /// The channels of a picture whose noise was taken out, beside the picture as it was traced.
 pub const DENOISED: [&str; 3] = ["denoised.R", "denoised.G", "denoised.B"];
+/// Its alpha, if it has any.
+pub const DENOISED_ALPHA: &str = "denoised.A";
 
-/// The picture as a build shows it: that of the channels [`DENOISED`] where there are these, else as [`decode`] has it.
-pub fn decode_shown(file: &[u8]) -> Result<(Picture, Facts), CannotDecode> {
+/// The picture of the channels [`DENOISED`], which a build shows; none where these are not.
+pub fn decode_denoised(file: &[u8]) -> Result<Option<Picture>, CannotDecode> {
     let meta = refuse_large(file)?;
     let has = |name: &str| {
         let mut channels = meta.headers.iter().flat_map(|header| &header.channels.list);
         channels.any(|channel| channel.name.eq(name))
     };
-    decode_colors(file, if DENOISED.into_iter().all(has) { DENOISED } else { ["R", "G", "B"] })
+    if !DENOISED.into_iter().all(has) {
+        return Ok(None);
+    }
+    decode_colors(file, DENOISED, DENOISED_ALPHA).map(|(picture, _)| Some(picture))
 }
 
-/// Reads channels of red, green and blue.
-fn decode_colors(file: &[u8], [r, g, b]: [&str; 3]) -> Result<(Picture, Facts), CannotDecode> {
+/// The picture as a build shows it: without noise where there is that, else as [`decode`] has it.
+pub fn decode_shown(file: &[u8]) -> Result<(Picture, Facts), CannotDecode> {
+    let (traced, facts) = decode(file)?;
+    Ok((decode_denoised(file)?.unwrap_or(traced), facts))
+}
+
+/// Reads channels of red, green and blue, and of alpha if there is that.
+fn decode_colors(file: &[u8], [r, g, b]: [&str; 3], alpha: &str) -> Result<(Picture, Facts), CannotDecode> {
     let refuse = |error: exr::error::Error| CannotDecode(error.to_string());
     let image = read()
         .no_deep_data()
@@ -157,7 +168,7 @@ fn decode_colors(file: &[u8], [r, g, b]: [&str; 3]) -> Result<(Picture, Facts), 
         .required(r)
         .required(g)
         .required(b)
-        .optional("A", 1.0)
+        .optional(alpha, 1.0)
         .collect_pixels(
             |size, _| (size.width(), vec![[0.0f32; 3]; size.area()], vec![1.0f32; size.area()]),
             |(width, pixels, alpha), at, (r, g, b, a): (f32, f32, f32, f32)| {

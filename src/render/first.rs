@@ -125,7 +125,7 @@ pub const GUIDES: usize = 7;
 
 /// What tells the things of a picture apart, known long before its light is: of every pixel, row by row, the normal and the
 /// albedo as [`Firsts`] has them, and the nearness, 1 at the camera, 1/2 as far away as things are most typically, and 0 where
-/// nothing is met. Once by the rays with even numbers, and once by those with odd ones.
+/// nothing is met. Once by the first half of some rays, and once by the others.
 pub type Guides = [Vec<[f32; GUIDES]>; 2];
 
 /// What the camera's rays of a window meet first.
@@ -178,8 +178,11 @@ impl Tracer<'_> {
             let near = firsts.depth().map_or(0.0, |depth| self.size / (self.size + depth.max(0.0)));
             [n.x, n.y, n.z, color.x, color.y, color.z, near].map(|v| v as f32)
         };
-        let half = |rays: &[Ray], from: usize| guide(&Firsts::of(rays.iter().skip(from).step_by(2)));
-        let both = self.of_firsts(window, samples, control, &|rays| [half(rays, 0), half(rays, 1)])?;
+        let halves = |rays: &[Ray]| {
+            let (some, others) = rays.split_at(rays.len() / 2);
+            [some, others].map(|rays| guide(&Firsts::of(rays.iter())))
+        };
+        let both = self.of_firsts(window, samples, control, &halves)?;
         Ok([0, 1].map(|half| both.iter().map(|pixel| pixel[half]).collect()))
     }
 

@@ -10,8 +10,8 @@ use crate::color::Rgb;
 pub(super) struct Tile<'a> {
     window: Window,
     samples: std::ops::Range<u32>,
-    /// Into how many parts samples are told, by their numbers.
-    parts: u32,
+    /// The numbers at which samples are told apart.
+    cuts: [u32; 2],
     /// Pixel and sample that come next.
     next: (u32, u32),
     scale: f64,
@@ -25,12 +25,14 @@ impl Tile<'_> {
     pub(super) fn new(
         window: Window,
         samples: std::ops::Range<u32>,
-        parts: u32,
+        cuts: Option<[u32; 2]>,
         (scale, unit): (f64, f64),
         control: &Control,
     ) -> Tile<'_> {
-        let pixels = vec![Pixel::default(); window.pixels() * parts as usize];
-        Tile { window, next: (0, samples.start), samples, parts, scale, unit, pixels, control }
+        let parts = if cuts.is_some() { 3 } else { 1 };
+        let pixels = vec![Pixel::default(); window.pixels() * parts];
+        let cuts = cuts.unwrap_or([u32::MAX; 2]);
+        Tile { window, next: (0, samples.start), samples, cuts, scale, unit, pixels, control }
     }
 }
 
@@ -51,7 +53,8 @@ impl Jobs for Tile<'_> {
             }
         }
         let (x, y) = (pixel % self.window.width, pixel / self.window.width);
-        let place = sample % self.parts * pixels + pixel;
+        let part = self.cuts.iter().filter(|cut| sample >= **cut).count() as u32;
+        let place = part * pixels + pixel;
         Some(Job { x: self.window.x + x, y: self.window.y + y, sample, pixel: place })
     }
 

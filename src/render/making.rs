@@ -6,7 +6,8 @@
 use super::control::{Cancelled, Control};
 use super::film::{Film, Window};
 use super::halt::{BLOCK, Limit, Limits, noisy};
-use super::{PASS, Prepass, Rendered, Shown, Sums, Tracer};
+use super::sums::Sums;
+use super::{PASS, Prepass, Rendered, Shown, Tracer};
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
@@ -21,8 +22,8 @@ const FIRST_PATHS: u64 = 1 << 19;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Making {
     film: Film,
-    /// The sums of the samples with even numbers alone, for who asks: see [`Making::in_halves`].
-    even: Option<Film>,
+    /// What the film was at two numbers of samples, for who asks: see [`Making::in_halves`].
+    early: Option<[Film; 2]>,
     /// The number of each pixel's first sample.
     start: u32,
     /// How what is shown was when it was last judged where samples go, if it was.
@@ -59,14 +60,16 @@ impl Making {
     /// The same of a share of the samples, from this one on.
     pub fn from_sample(window: Window, scale: f64, start: u32) -> Making {
         let blocks = window.tiles(BLOCK).map(|window| Block { window, samples: 0, aim: 0 }).collect();
-        Making { film: Film::new(window, scale), even: None, start, judged: None, blocks }
+        Making { film: Film::new(window, scale), early: None, start, judged: None, blocks }
     }
 
-    /// The same of a picture without samples, with the sums of every other sample kept apart too: two pictures of the same light
-    /// tell noise from what is there. It takes as much memory again.
+    /// The same of a picture without samples, with the sums of the first ones kept apart too: two pictures of the same light
+    /// tell noise from what is there. Each pixel's last power of two samples is kept, and the one before it, of which one is
+    /// from a third to two thirds of all, whenever the picture stops. Every other sample would tell too much noise: neighbours
+    /// in the sequence are each other's opposites. It takes twice as much memory again.
     pub fn in_halves(self) -> Making {
-        let even = Film::new(self.film.window(), self.film.scale());
-        Making { even: Some(even), ..self }
+        let film = || Film::new(self.film.window(), self.film.scale());
+        Making { early: Some([film(), film()]), ..self }
     }
 
     /// One that was put aside: its film, the number of its first sample, what each pixel was on the way to, row by row, and by
@@ -83,7 +86,7 @@ impl Making {
             Some(Block { window: window_of, samples, aim })
         };
         let blocks = window.tiles(BLOCK).map(block).collect::<Option<Vec<Block>>>()?;
-        Some(Making { film, even: None, start, judged, blocks })
+        Some(Making { film, early: None, start, judged, blocks })
     }
 
     /// Its sums.
@@ -91,17 +94,15 @@ impl Making {
         &self.film
     }
 
-    /// Whether every other sample is kept apart.
+    /// Whether the first samples are kept apart.
     pub fn is_in_halves(&self) -> bool {
-        self.even.is_some()
+        self.early.is_some()
     }
 
-    /// The sums of the samples with even numbers and of those with odd ones, which together are [`Making::film`] to the bit;
-    /// none unless it is [`Making::in_halves`].
+    /// The sums of each pixel's first samples, about half of them, and of the others, which together are [`Making::film`] to the
+    /// bit; none unless it is [`Making::in_halves`].
     pub fn halves(&self) -> Option<[Film; 2]> {
-        let even = self.even.clone()?;
-        let odd = self.film.without(&even);
-        Some([even, odd])
+        Some(self.film.halved(self.early.as_ref()?))
     }
 
     /// Its sums, and nothing else.
@@ -355,7 +356,7 @@ impl Tracer<'_> {
                     fits.map_or(PASS, |paths| (paths / (LAST_PASSES * pixels)).min(u64::from(PASS)) as u32);
                 let Some(step) = making.next(pace.fit(STEP).unwrap_or(FIRST_PATHS), pass) else { break };
                 let start = pace.elapsed(control);
-                let sums = Sums { film: &mut making.film, even: making.even.as_mut() };
+                let sums = Sums { film: &mut making.film, early: making.early.as_mut() };
                 self.trace_step(sums, &step.windows, step.samples.clone(), control)?;
                 making.taken(&step);
                 let pixels: usize = step.windows.iter().map(Window::pixels).sum();

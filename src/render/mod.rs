@@ -20,7 +20,7 @@
 //! | [`apart`] | a pixel taken apart: light by light, and by kinds of paths |
 //! | [`first`] | what camera rays meet first |
 //! | [`feedback`] | what many paths did, all over a picture |
-//! | [`film`] | exact sums |
+//! | [`film`], `sums` | exact sums |
 //! | `prepass` | exposure and the film's scale |
 //! | [`shares`] | how much of the light is of which lamp |
 //! | [`halt`] | when there are enough samples, and where too few |
@@ -65,6 +65,7 @@ mod surfaces;
 #[cfg(test)]
 mod tests;
 mod stray;
+mod sums;
 pub mod texture;
 mod vector;
 mod warp;
@@ -97,6 +98,7 @@ use shape::{Face, Hits, Points, decode, slot};
 use space::Space;
 use std::collections::BTreeMap;
 pub use stray::Strays;
+use sums::Sums;
 use surfaces::Surfaces;
 
 /// A scene, ready to be traced.
@@ -179,26 +181,6 @@ pub struct Shown {
     pub stops: f64,
     /// The curve from scene to display.
     pub tonemap: Tonemap,
-}
-
-/// Where samples are added up.
-struct Sums<'f> {
-    /// All of them.
-    film: &'f mut Film,
-    /// Those with even numbers once more, if they are wanted apart.
-    even: Option<&'f mut Film>,
-}
-
-impl Sums<'_> {
-    /// Adds the pixels of a tile: of all samples, or where they are wanted apart, those of even samples and then of odd ones.
-    fn add(&mut self, tile: Window, pixels: &[Pixel]) {
-        for part in pixels.chunks(tile.pixels().max(1)) {
-            self.film.merge_pixels(tile, part);
-        }
-        if let Some(even) = &mut self.even {
-            even.merge_pixels(tile, &pixels[..tile.pixels()]);
-        }
-    }
 }
 
 /// Pixels along the side of a tile.
@@ -325,7 +307,7 @@ impl<'s> Tracer<'s> {
     ) -> Result<(), Cancelled> {
         let pixels: u64 = windows.iter().map(|window| window.pixels() as u64).sum();
         control.plan(pixels * u64::from(samples.end - samples.start));
-        self.trace_step(Sums { film, even: None }, windows, samples, control)
+        self.trace_step(Sums { film, early: None }, windows, samples, control)
     }
 
     /// The same for paths that have been planned.
@@ -337,10 +319,11 @@ impl<'s> Tracer<'s> {
         control: &Control,
     ) -> Result<(), Cancelled> {
         let tiles: Vec<Window> = windows.iter().flat_map(|window| window.tiles(TILE)).collect();
-        let (scale, parts) = (sums.film.scale(), if sums.even.is_some() { 2 } else { 1 });
+        let scale = sums.film.scale();
         let view = View::new(&self.eye, self.scene.trace.seed);
         for start in samples.clone().step_by(PASS as usize) {
             let pass = start..samples.end.min(start + PASS);
+            let cuts = sums.cuts(pass.end);
             let traced: Vec<Vec<Pixel>> = tiles
                 .par_iter()
                 .map(|tile| {
@@ -348,7 +331,7 @@ impl<'s> Tracer<'s> {
                     if control.is_cancelled() {
                         return Vec::new();
                     }
-                    let mut jobs = Tile::new(*tile, pass.clone(), parts, (scale, self.unit), control);
+                    let mut jobs = Tile::new(*tile, pass.clone(), cuts, (scale, self.unit), control);
                     self.trace(&view, &mut jobs);
                     jobs.pixels
                 })
@@ -357,7 +340,7 @@ impl<'s> Tracer<'s> {
                 return Err(Cancelled);
             }
             for (tile, pixels) in tiles.iter().zip(traced) {
-                sums.add(*tile, &pixels);
+                sums.add(*tile, &pixels, pass.start, cuts);
             }
         }
         Ok(())

@@ -118,7 +118,13 @@ fn halves_of_the_samples_add_up_to_the_whole() {
     let scene = small_room();
     let tracer = Tracer::new(&scene);
     let window = Window { x: 5, y: 3, width: 37, height: 20 };
-    for limits in [Target::Samples(7), Target::Noise(0.2)].map(Limits::from) {
+    let samples = |samples: u32, first: u32| (Target::Samples(samples), first);
+    for (target, first) in
+        [samples(2, 1), samples(7, 4), samples(9, 4), samples(64, 32), samples(96, 32), samples(100, 64)]
+            .into_iter()
+            .chain([(Target::Noise(0.2), 32)])
+    {
+        let limits = Limits::from(target);
         let made = |mut making: Making| {
             tracer.go_on(&mut making, &limits, SHOWN, &Control::new(), &mut |_| {}).expect("nobody cancels");
             making
@@ -126,12 +132,13 @@ fn halves_of_the_samples_add_up_to_the_whole() {
         let (whole, halved) =
             (made(Making::new(window, 65_536.0)), made(Making::new(window, 65_536.0).in_halves()));
         assert_eq!((whole.film(), whole.halves()), (halved.film(), None));
-        let [mut even, odd] = halved.halves().expect("they are kept");
-        let samples = whole.film().samples(20, 10);
-        assert_eq!([even.samples(20, 10), odd.samples(20, 10)], [samples.div_ceil(2), samples / 2]);
-        assert_ne!(even.mean(20, 10), odd.mean(20, 10));
-        even.merge(&odd);
-        assert_eq!(even, *whole.film());
+        let [mut some, others] = halved.halves().expect("they are kept");
+        let mut early = Film::new(window, 65_536.0);
+        tracer.add_samples(&mut early, 0..first, &Control::new()).expect("nobody cancels");
+        assert_eq!(some, early, "the first {first}");
+        assert_eq!(others.samples(20, 10), whole.film().samples(20, 10) - first);
+        some.merge(&others);
+        assert_eq!(some, *whole.film());
     }
 }
 
