@@ -68,7 +68,9 @@ const FIT: Kernel = Kernel { radius: 9, patch: 3, bandwidth: 1.0, dense: 3 };
 /// Squarings of the weights of [`FIT`]: those of bandwidths 1 and 1/2.
 const SQUARINGS: [u32; 2] = [0, 2];
 /// What mixes estimates of errors, and choices between bandwidths (section 5.3).
-const CHOICE: Kernel = Kernel { radius: 3, patch: 1, bandwidth: 1.0, dense: 1 };
+const CHOICE: Kernel = Kernel { radius: 3, patch: 1, bandwidth: 1.0, dense: 3 };
+/// How many times the noise a fit's error must be where it is not taken: estimates are noisy too.
+const MUCH_WORSE: f32 = 2.0;
 /// Variance of features that is nothing.
 const LEAST_VARIANCE: f32 = 1e-8;
 
@@ -154,7 +156,7 @@ fn first_pass(halves: &[Planes; 2], share: &[f32], variance: &Planes, features: 
     let choice = |chosen: usize| -> Vec<f32> {
         let is_least = |index: usize| {
             let [wide, narrow, none] = [0, 1, 2].map(|which| estimates.planes[which][index]);
-            let least = if none < wide.min(narrow) {
+            let least = if MUCH_WORSE * none < wide.min(narrow) {
                 2
             } else if narrow < wide {
                 1

@@ -67,6 +67,9 @@ fn an_exr_holds_the_picture_with_and_without_noise() {
     assert_same(&desk.path("clean.pfm"), &desk.path("later.pfm"));
     assert_same(&desk.path("plain.png"), &desk.path("noisy.png"));
     assert!(desk.get("plain.png") != desk.get("clean.png"));
+    // As an EXR it still is both.
+    desk.run("develop -q both.exr -o later.exr").expect(0, &[]);
+    assert!(channels(&desk.get("later.exr")) == both);
     desk.run("develop -q plain.exr --noisy -o noisy.png").expect(0, &[]);
     assert_same(&desk.path("plain.png"), &desk.path("noisy.png"));
 }
@@ -83,6 +86,15 @@ fn what_is_transparent_stays_so() {
     let nothing: Vec<usize> = (0..40 * 30).filter(|index| both["A"][*index] == 0.0).collect();
     assert!(nothing.len() > 300);
     assert!(nothing.iter().all(|index| both["denoised.R"][*index] == 0.0));
+    // All that is covered has one colour, also where it is covered in part.
+    let covered = (0..40 * 30).filter(|index| both["denoised.A"][*index] > 0.05);
+    let colors: Vec<f32> =
+        covered.map(|index| both["denoised.R"][index] / both["denoised.A"][index]).collect();
+    let inside = both["denoised.R"][15 * 40 + 20];
+    assert!(
+        colors.len() > 300 && colors.iter().all(|color| (color / inside - 1.0).abs() < 0.05),
+        "{colors:?}"
+    );
     desk.run("develop -q both.exr -o later.png").expect(0, &[]);
     assert_same(&desk.path("clean.png"), &desk.path("later.png"));
 }

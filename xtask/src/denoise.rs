@@ -6,10 +6,27 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What is measured, below `examples`.
-const SCENES: &[&str] =
-    &["three-balls", "marbles", "one-weekend", "report/figure-05-indirect", "sphereflake"];
+const SCENES: &[&str] = &[
+    "report/figure-02-opaque",
+    "report/figure-03-specular",
+    "report/figure-04-transparent",
+    "report/figure-05-indirect",
+    "report/figure-06-antialiasing",
+    "report/figure-07-focus",
+    "report/figure-08-camera",
+    "report/figure-09-hyperboloids",
+    "report/figure-10-parallel",
+    "garden/garden",
+    "hyperboloid-tower",
+    "marbles",
+    "newton",
+    "one-weekend",
+    "sphereflake",
+    "three-balls",
+    "turntable",
+];
 /// The size of its picture.
-const SIZE: &str = "320x240";
+const SIZE: &str = "160x120";
 /// Samples a pixel.
 const SAMPLES: [u32; 3] = [4, 16, 64];
 /// Those of the truth, which has another seed.
