@@ -129,7 +129,7 @@ impl Film {
     pub(super) fn halved(&self, early: &[Film; 2]) -> [Film; 2] {
         let [first, second] = early.each_ref().map(|film| &film.pixels);
         let halved = |((all, first), second): ((&Pixel, &Pixel), &Pixel)| {
-        let from_half = |pixel: &Pixel| (2 * pixel.samples()).abs_diff(all.samples());
+            let from_half = |pixel: &Pixel| (2 * pixel.samples()).abs_diff(all.samples());
             let some = if from_half(first) <= from_half(second) { first } else { second };
             (*some, all.without(some))
         };

@@ -388,10 +388,10 @@ render { size: (16, 12), samples: 4, bounces: 2 }
             "plane {{}}\nlight {{ at: (0, 3, 0)m, power: 9W }}\nsphere {{ at: (3, 1, 0)m, radius: 50cm }}\n{before}light {{ at: (3, 1, 0)m, power: 60W }}\nrender {{ size: (8, 8), samples: 64, bounces: 1 }}\n"
         )
     };
-    desk.put("sealed.rt", &sealed(""));
+    desk.put("sealed.rt", sealed(""));
     let told = desk.run("build sealed.rt --feedback").stderr;
     assert!(told.contains("W0604") && !told.contains("W0705"), "{told}");
-    desk.put("sealed.rt", &sealed("@allow(W0604, \"lit from outside today\")\n"));
+    desk.put("sealed.rt", sealed("@allow(W0604, \"lit from outside today\")\n"));
     let told = desk.run("build sealed.rt --feedback").stderr;
     assert!(!told.contains("W0604") && !told.contains("W0705"), "{told}");
 }
