@@ -57,9 +57,16 @@ impl<'a> Context<'a> {
         let threads = threads.map_err(|error| Problem::new(format!("cannot start the threads: {error}")))?;
         if arguments.keeping.keeps() {
             interrupt.heed_requests();
-        } else if arguments.keeping.wait.is_some() {
-            let problem = Problem::new("`--wait` is for work that is kept: else nobody is in the way");
-            return Err(problem.help("keep it with `--checkpoint` or `--resume`, or leave the flag out"));
+        } else {
+            let Keeping { wait, checkpoint_every, .. } = &arguments.keeping;
+            let told = [
+                (wait.is_some(), "`--wait` is for work that is kept: else nobody is in the way"),
+                (checkpoint_every.is_some(), "`--checkpoint-every` is for work that is kept, and none is"),
+            ];
+            if let Some((_, why)) = told.into_iter().find(|(is_given, _)| *is_given) {
+                let help = "keep it with `--checkpoint` or `--resume`, or leave the flag out";
+                return Err(Problem::new(why).help(help));
+            }
         }
         Ok(Context { arguments, threads, terminal, interrupt })
     }
@@ -346,7 +353,8 @@ pub fn samples(traced: &Traced) -> String {
         Limit::Noise => ", as wanted,".to_string(),
         // Where pixels differ, a noise target chose among them.
         Limit::Time if least != most => {
-            format!(", stopped by the time (again by the same noise target and `--samples {most}`),")
+            let again = format!("`--samples {most}` with the same `--noise` and `--min-samples`");
+            format!(", stopped by the time (again by {again}),")
         }
         Limit::Time => format!(", stopped by the time (again by `--samples {most}`),"),
     };

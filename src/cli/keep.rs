@@ -122,13 +122,18 @@ impl<'a> Keeper<'a> {
             let problem = Problem::new(format!("cannot go on from `{}`: {why}", path.display()));
             match self.places.yields {
                 true => problem.help("remove that file, and the frame is made from its beginning"),
-                false => problem
-                    .help("`--resume=never` begins afresh, `--checkpoint=FILE` keeps the samples elsewhere"),
+                false => problem.help(
+                    "`--resume=never` begins afresh, `--checkpoint=FILE` keeps the samples elsewhere, and `rtc develop` makes \
+                     a picture of those that are there",
+                ),
             }
         };
         let saved = Saved::decode(&bytes).map_err(|why| cannot(format!("it {why}")))?;
         match self.subject.refuses(&saved.subject).or_else(|| refuses(&saved.making)) {
-            Some(_) if self.places.yields => Ok(None),
+            Some(why) if self.places.yields => {
+                self.terminal.line(&format!("`{}` is not gone on from: {why}", path.display()));
+                Ok(None)
+            }
             Some(why) => Err(cannot(why)),
             None => {
                 self.last.1 = saved.making.mean_samples();

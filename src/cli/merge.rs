@@ -72,7 +72,7 @@ fn add(merging: Option<&mut Merging>, path: &Path) -> Result<Option<Merging>, Pr
     let bytes = input::read_bytes(path, LARGEST)?;
     let refuse = |why: saved::Refused| {
         Problem::new(format!("`{name}` {why}"))
-            .help("make that share again with `--shard I/N`, or leave out what is no share of the picture with `--partial`")
+            .help("give each share once, make one that is damaged again with `--shard I/N`, or have `--partial` leave out what does not go with the others")
     };
     let saved = Saved::decode(&bytes).map_err(refuse)?;
     match merging {

@@ -182,6 +182,9 @@ fn limits(arguments: &Build, scene: &Scene, share: Option<Share>) -> Result<Limi
             return Err(problem.help("give one with `--noise 1%`, or leave the flag out"));
         }
         limits.least = least;
+        if arguments.taking.samples.is_none() {
+            limits.samples = limits.samples.max(least);
+        }
     }
     Ok(limits)
 }
@@ -204,7 +207,7 @@ pub fn trace(
         context.interrupt.wait()
     };
     let aovs = &context.arguments.aov;
-    let every = context.arguments.keeping.checkpoint_every;
+    let every = context.arguments.keeping.every();
     let mut keeper = places.map(|places| {
         Keeper::new(places, every, (&tracing.subject, &tracing.facts), context.interrupt, context.terminal)
     });
@@ -288,12 +291,19 @@ impl<'a> Tracing<'a> {
         Making::from_sample(window, self.prepass.scale, start)
     }
 
-    /// Why samples of this subject are none to go on with, if they are not. Which there are for a noise depends on how the
-    /// picture was to be shown.
+    /// Why samples of this subject are none to go on with, if they are not: those that are there cannot be taken back, and which
+    /// there are for a noise depends on how the picture was to be shown.
     fn refuses(&self, kept: &Making) -> Option<String> {
         let (own, other) = (self.prepass.scale, kept.film().scale());
         if own != other {
             return Some(format!("its sums are of another scale ({other:e}, not {own:e})"));
+        }
+        let ([_, most], limits) = (kept.samples(), &self.limits);
+        if limits.noise.is_none() && most > limits.samples {
+            return Some(format!(
+                "it has up to {most} samples a pixel already, and no more than {} are asked for",
+                limits.samples
+            ));
         }
         let judged = kept.judged().filter(|judged| self.limits.noise.is_some() && *judged != self.shown)?;
         Some(match judged.stops == self.shown.stops {

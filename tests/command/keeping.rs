@@ -73,7 +73,7 @@ fn shares_put_together_are_the_picture_of_one_machine() {
     desk.run("merge part1.exr foreign.exr part3.exr -o no.exr")
         .expect(2, &["`foreign.exr` does not go with `part1.exr`", "its seed (9, not 0)"]);
     desk.run("merge one.exr -o no.exr")
-        .expect(2, &["`one.exr` holds no exact sums", "leave out what is no share"]);
+        .expect(2, &["`one.exr` holds no exact sums", "have `--partial` leave out"]);
     desk.run("merge room.rt -o no.exr").expect(2, &["`room.rt` is no EXR"]);
     fs::write(desk.path("torn.exr"), &desk.get("part2.exr")[..9000]).unwrap();
     desk.run("merge part1.exr torn.exr part3.exr -o no.exr").expect(2, &["`torn.exr` is no EXR"]);
@@ -321,8 +321,11 @@ fn signals_write_a_checkpoint() {
         send(signal);
         super::ended(child.wait_with_output().unwrap()).expect(130, &["interrupted"]);
         assert_ne!(desk.get("kept"), before, "SIG{signal} wrote no checkpoint");
-        desk.run("build room.rt --size 200x150 --samples 1 -o a.exr --resume=kept").expect(0, &["samples"]);
-        for name in ["kept", "a.exr"] {
+        // There are more already.
+        desk.run("build room.rt --size 200x150 --samples 1 -o a.png --resume=kept")
+            .expect(2, &["samples a pixel already, and no more than 1 are asked for", "`rtc develop`"]);
+        desk.run("develop kept -o a.png").expect(0, &[]);
+        for name in ["kept", "a.png"] {
             fs::remove_file(desk.path(name)).unwrap();
         }
         assert_eq!(desk.names(), ["ball.rt", "room.rt"]);
@@ -334,6 +337,10 @@ fn a_picture_stops_at_the_first_limit_and_says_at_which() {
     let desk = desk();
     desk.put("room.rt", CALM);
     let run = |rest: &str| desk.run(&format!("build room.rt --size 48x36 {rest}"));
+    run("--checkpoint-every 9spp -o a.exr")
+        .expect(2, &["`--checkpoint-every` is for work that is kept", "keep it with"]);
+    desk.run("build room.rt --size 4x3 --noise 0.01% --min-samples 70000 -o a.exr")
+        .expect(0, &["70000 samples", "W0701"]);
     run("--noise 1.5% -o a.exr -j 1").expect(0, &["noise", "as wanted"]);
     run("--noise 1.5% -o b.exr -j 2").expect(0, &["as wanted"]);
     assert_same(&desk.path("a.exr"), &desk.path("b.exr"));

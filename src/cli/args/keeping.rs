@@ -27,9 +27,10 @@ pub struct Keeping {
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
     pub checkpoint: Option<Option<PathBuf>>,
 
-    /// How often they are kept: every so long, as `60s` or `5min`, or whenever so many samples a pixel came, as `100spp`.
-    #[arg(long, value_name = "60s|100spp", default_value = "60s", value_parser = every)]
-    pub checkpoint_every: Every,
+    /// How often they are kept: every so long, as `60s` or `5min`, or whenever so many samples a pixel came, as `100spp`. By
+    /// default `60s`.
+    #[arg(long, value_name = "60s|100spp", value_parser = every)]
+    pub checkpoint_every: Option<Every>,
 
     /// Goes on from the samples that were kept: `auto` where there are some, `never` begins afresh, and a file must be there.
     /// Keeps them too, as `--checkpoint` does.
@@ -52,6 +53,11 @@ impl Keeping {
     /// Whether samples are kept.
     pub fn keeps(&self) -> bool {
         self.checkpoint.is_some() || self.resume.is_some()
+    }
+
+    /// How often they are kept.
+    pub fn every(&self) -> Every {
+        self.checkpoint_every.unwrap_or(Every::Time(Duration::from_secs(60)))
     }
 }
 
