@@ -3,6 +3,7 @@
 #![no_main]
 
 #[path = "../../src/cli/lsp/document.rs"]
+#[allow(dead_code)]
 mod document;
 #[path = "../../tests/dump.rs"]
 #[allow(dead_code)]
