@@ -228,8 +228,7 @@ impl<'a> Checker<'a> {
                 Declared::Field(field) => errors::mismatch(name, *field, value.span, text, &ty),
                 other => errors::mismatch_declared(name, &other.describe(), value.span, &ty),
             };
-            let set = self.is_setting(value.span);
-            self.report(if set { errors::in_setting(diagnostic, name) } else { diagnostic });
+            self.report(diagnostic);
             return (Expr::invalid(value.span), false);
         }
         if let Type::Made(making) = ty {

@@ -53,6 +53,8 @@ pub(super) struct Known {
     pub(super) used: bool,
     /// Whether nobody needs to use it: what is drawn, what an imported file declares.
     pub(super) free: bool,
+    /// Whether what declares it could not be understood: nothing is said to hide it.
+    lost: bool,
 }
 
 /// A statement, many of them, or the name of one that could not be understood.
@@ -159,7 +161,7 @@ impl Checker<'_> {
                 scope.names.insert(name.text.clone(), scope.known.len());
             }
         }
-        scope.known.push(Known { name: name.clone(), ty, slot, item: 0, used: false, free });
+        scope.known.push(Known { name: name.clone(), ty, slot, item: 0, used: false, free, lost: false });
         slot
     }
 
@@ -180,7 +182,15 @@ impl Checker<'_> {
                 }
             }
             let slot = self.slot();
-            scope.known.push(Known { name: name.clone(), ty: Type::Invalid, slot, item, used: false, free });
+            scope.known.push(Known {
+                name: name.clone(),
+                ty: Type::Invalid,
+                slot,
+                item,
+                used: false,
+                free,
+                lost: false,
+            });
         }
         // A broken item's name counts as declared where nothing else declares it: its slip is one error.
         for (item, statement) in items.iter().enumerate() {
@@ -189,7 +199,7 @@ impl Checker<'_> {
                 scope.names.insert(name.text.clone(), scope.known.len());
                 let slot = self.slot();
                 let (name, ty) = (name.clone(), Type::Invalid);
-                scope.known.push(Known { name, ty, slot, item, used: true, free: true });
+                scope.known.push(Known { name, ty, slot, item, used: true, free: true, lost: true });
             }
         }
         scope
@@ -259,13 +269,11 @@ impl Checker<'_> {
 
     /// What a declaration of this name would hide.
     fn shadows(&self, name: &Name) -> Option<crate::diagnostic::Diagnostic> {
-        let outer = self
-            .scopes
-            .iter()
-            .rev()
-            .find_map(|scope| scope.names.get(&name.text).map(|&known| &scope.known[known].name));
+        let outer = self.scopes.iter().rev().find_map(|scope| {
+            scope.names.get(&name.text).map(|&known| &scope.known[known]).filter(|known| !known.lost)
+        });
         if let Some(outer) = outer {
-            return Some(errors::shadows(name, outer));
+            return Some(errors::shadows(name, &outer.name));
         }
         // What is wrong with a word of the language as a name was said.
         let what = if syntax::RESERVED.contains(&name.text.as_str()) {

@@ -48,3 +48,14 @@ pub(super) fn color(builder: &Builder, pair: Node, field: Option<&Name>) -> Deep
     });
     invalid(span)
 }
+
+/// Whether an entry is a value in angle brackets, as other languages have them, with or without a name before it.
+pub(super) fn is_angled(pair: &Node) -> bool {
+    let text = match pair.as_rule() {
+        Rule::broken => pair.as_str(),
+        Rule::uncoloned => pair.as_str().trim_start_matches(|c: char| c.is_alphanumeric() || c == '_'),
+        _ => return false,
+    };
+    let inside = text.trim_ascii_start().strip_prefix('<').map(str::trim_ascii_start);
+    inside.is_some_and(|inside| inside.starts_with(|c: char| c.is_ascii_digit() || "-.(".contains(c)))
+}

@@ -7,7 +7,7 @@ use super::ast::{
 use super::cut::Item;
 use super::errors::{self, Held, Sink, statements};
 use super::slips::{ends_invalid, spoil};
-use super::{BLANKS, docs, statement, value};
+use super::{BLANKS, angled, docs, statement, value};
 use crate::span::{SourceId, Span};
 use pest::iterators::{Pair, Pairs};
 use smol_str::SmolStr;
@@ -41,17 +41,6 @@ pub(super) struct Source<'t> {
     pub(super) known: Option<&'t super::Remembered>,
 }
 
-/// Whether an entry is a value in angle brackets, as other languages have them, with or without a name before it.
-fn is_angled(pair: &Node) -> bool {
-    let text = match pair.as_rule() {
-        Rule::broken => pair.as_str(),
-        Rule::uncoloned => pair.as_str().trim_start_matches(|c: char| c.is_alphanumeric() || c == '_'),
-        _ => return false,
-    };
-    let inside = text.trim_ascii_start().strip_prefix('<').map(str::trim_ascii_start);
-    inside.is_some_and(|inside| inside.starts_with(|c: char| c.is_ascii_digit() || "-.(".contains(c)))
-}
-
 fn is_statement(rule: Rule) -> bool {
     use Rule::*;
     matches!(rule, param | part | import | function | repetition | choice | assertion | unfinished)
@@ -72,6 +61,8 @@ pub(super) struct Builder<'t> {
     pub(super) unbraced: Cell<bool>,
     /// Whether a param can stand where it is: in a file or a part, outside of things.
     pub(super) declares: Cell<bool>,
+    /// Whether it is in a group, outside of the things in it.
+    pub(super) grouped: Cell<bool>,
 }
 
 impl<'t> Builder<'t> {
@@ -86,6 +77,7 @@ impl<'t> Builder<'t> {
             foreign: Cell::new(None),
             unbraced: Cell::new(false),
             declares: Cell::new(true),
+            grouped: Cell::new(false),
         }
     }
 
@@ -257,7 +249,7 @@ impl<'t> Builder<'t> {
                     let known = self.reported();
                     let start = pair.as_span().end() - pair.as_str().trim_ascii_start().len();
                     let end = pair.as_span().start() + pair.as_str().trim_ascii_end().len();
-                    if !top && is_angled(&pair) {
+                    if !top && angled::is_angled(&pair) {
                         self.foreign.set(self.foreign.get().or(Some(self.at(start, end))));
                     }
                     signed = pair.as_rule() == Rule::definition
@@ -317,9 +309,10 @@ impl<'t> Builder<'t> {
     /// An entry with `@off` and the like before it.
     fn marked(&self, pair: Node<'t>, top: bool) -> Deep<Entry> {
         let span = self.trimmed(&pair);
-        let (mut prefixes, mut deepest) = (vec![], 0);
+        let (mut prefixes, mut written, mut deepest) = (vec![], "", 0);
         for pair in pair.into_inner() {
             if pair.as_rule() == Rule::mark {
+                written = pair.as_str().trim_ascii_end();
                 let (prefix, depth) = self.prefix(pair);
                 deepest = deepest.max(depth);
                 prefixes.extend(prefix);
@@ -344,7 +337,7 @@ impl<'t> Builder<'t> {
             return self.checked(entry, depth.max(deepest), span);
         }
         if let Some(last) = prefixes.last() {
-            self.report(statements::marks_nothing(&format!("@{}", last.name.text), last.span));
+            self.report(statements::marks_nothing(last, written));
         }
         (Entry::Broken(Broken { name: None, span }), 0)
     }
@@ -376,8 +369,10 @@ impl<'t> Builder<'t> {
     pub(super) fn construct(&self, mut kind: Vec<Name>, body: Node<'t>) -> Deep<Option<Construct>> {
         let (known, around) = (self.reported(), self.foreign.take());
         let declares = self.declares.replace(false);
+        let grouped = self.grouped.replace(&kind[0].text == "group");
         let (body, depth) = self.body(body);
         self.declares.set(declares);
+        self.grouped.set(grouped);
         if let Some(angled) = self.foreign.replace(around) {
             self.sink.borrow_mut().truncate(known);
             self.report(errors::foreign_body(&kind[0].text, kind[0].span, angled));

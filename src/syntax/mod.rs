@@ -8,6 +8,7 @@
 
 mod angled;
 pub mod ast;
+mod bodiless;
 mod branches;
 mod build;
 mod cut;

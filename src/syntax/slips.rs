@@ -284,6 +284,8 @@ impl<'t> Builder<'t> {
             // `sphere radius: 1m }`
             self.report(errors::no_brace(&name.text, name.span, value_span));
             return (Entry::Broken(Broken { name: None, span }), 0);
+        } else if let Some(named) = self.thing_or_field(&name, &value, span, top) {
+            return (named, 0);
         } else if !top {
             self.report(errors::missing_colon(&name.text, name.span, value_span));
             let (value, depth) = value::expression(self, value);
@@ -362,6 +364,12 @@ impl<'t> Builder<'t> {
     pub(super) fn lone(&self, word: &Node, span: Span, top: bool) -> Entry {
         let name = self.name(word);
         let word_end = word.as_span().end();
+        if self.after(word_end).starts_with('.')
+            && !is_reserved(&name.text)
+            && let Some(name) = self.bodiless_path(&name, word_end)
+        {
+            return Entry::Broken(Broken { name, span });
+        }
         self.report(match name.text.as_str() {
             keyword @ ("let" | "material") if top || keyword == "let" => {
                 errors::missing_name(keyword, name.span)

@@ -138,9 +138,21 @@ fn param<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> D
                 (range, default) = (Some(ends.0), Some(given.0));
             }
             _ => {
+                let (known, begins) = (builder.reported(), !in_range && begins_range(&part, &ty));
                 let (value, deep) = value::expression(builder, part);
                 depth = depth.max(deep);
-                if in_range { range = Some(value) } else { default = Some(value) }
+                if begins {
+                    builder.sink.borrow_mut().truncate(known);
+                    // Of which type it is was asked first.
+                    if !matches!(ty, TypeName::Invalid(_)) {
+                        builder.report(errors::missing_value("in", span.after()));
+                    }
+                    (default, range) = (Some(invalid(value.span)), Some(invalid(span.after())));
+                } else if in_range {
+                    range = Some(value)
+                } else {
+                    default = Some(value)
+                }
             }
         }
     }
@@ -153,6 +165,13 @@ fn param<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> D
         invalid(place)
     });
     (StatementKind::Param { name, ty, default, range }, depth + 1)
+}
+
+/// `param n: int = 5 in`: whether the `in` at the end is the word of a range, and no inch.
+fn begins_range(default: &Node, ty: &TypeName) -> bool {
+    let is_length = matches!(ty, TypeName::Named(name) if name.text == "length");
+    let before = default.as_str().trim_ascii_end().strip_suffix("in");
+    !is_length && before.is_some_and(|before| before.ends_with(super::BLANKS))
 }
 
 /// `:=` where `=` should stand.
@@ -270,7 +289,8 @@ fn function<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Span) -> De
         Some(arrow) => {
             let sign = arrow.as_str().trim_ascii_end();
             if sign != "->" {
-                builder.report(slips::wrong_arrow(sign, builder.trimmed(&arrow)));
+                let touches = !builder.all_before(arrow.as_span().start()).ends_with(super::BLANKS);
+                builder.report(slips::wrong_arrow(sign, builder.trimmed(&arrow), touches));
             }
             result = type_name(builder, parts.next().expect("a type follows"), "the result", "fn");
         }

@@ -48,7 +48,7 @@ pub(in crate::check) fn mismatch(
         _ => match (field, ty) {
             (FieldType::Choice(words), _) => diagnostic.help(word_list(words)),
             (FieldType::Tuple(..) | FieldType::IntTuple(_), _) => {
-                diagnostic.help(format!("write `{}: {}`", name, example_tuple(field)))
+                diagnostic.help(format!("such as `{}`", example_tuple(field)))
             }
             (FieldType::Color | FieldType::Paint, Type::Text)
                 if crate::color::named(text.trim_matches('"')).is_some() =>
@@ -84,15 +84,6 @@ pub(in crate::check) fn mismatch(
             },
         },
     }
-}
-
-/// A value in a `--set`, where a field is not written as in a scene.
-pub(in crate::check) fn in_setting(mut diagnostic: Diagnostic, name: &str) -> Diagnostic {
-    let field = format!("write `{name}: ");
-    if let Some(value) = diagnostic.help.as_ref().and_then(|help| help.strip_prefix(&field)) {
-        diagnostic.help = Some(format!("write `--set \"{name}={}\"`", value.trim_end_matches('`')));
-    }
-    diagnostic
 }
 
 /// The name of what is wanted stands in quotes.

@@ -3,7 +3,7 @@
 use super::unexpected;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::span::Span;
-use crate::syntax::ast::Name;
+use crate::syntax::ast::{ExprKind, Name, Prefix};
 
 /// How the statement that begins with a word is written.
 fn form(word: &str) -> &'static str {
@@ -286,9 +286,10 @@ pub(in crate::syntax) fn in_parameters(token: &str, span: Span) -> Diagnostic {
         .help("each parameter is a name and a type: `a: length`")
 }
 
-/// `fn f(a: number): number`, `=>`
-pub(in crate::syntax) fn wrong_arrow(sign: &str, span: Span) -> Diagnostic {
-    unexpected(sign, span).at("`->` is wanted").help(format!("write `{}`", form("fn"))).fix(span, "->")
+/// `fn f(a: number): number`, `=>`; a sign without a space before it is followed by one.
+pub(in crate::syntax) fn wrong_arrow(sign: &str, span: Span, touches: bool) -> Diagnostic {
+    let arrow = if touches { " ->" } else { "->" };
+    unexpected(sign, span).at("`->` is wanted").help(format!("write `{}`", form("fn"))).fix(span, arrow)
 }
 
 /// `fn f(a: number) -> number`
@@ -313,11 +314,31 @@ pub(in crate::syntax) fn missing_mark(span: Span) -> Diagnostic {
     unexpected("@", span).at("a word belongs behind this").help("there are `@off`, `@solo` and `@allow(…)`")
 }
 
-/// `@off` before nothing.
-pub(in crate::syntax) fn marks_nothing(mark: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0001, format!("nothing follows `{mark}`"), span)
+/// `@off` before nothing; `written` is the mark with what is in its parentheses.
+pub(in crate::syntax) fn marks_nothing(mark: &Prefix, written: &str) -> Diagnostic {
+    let word = format!("@{}", mark.name.text);
+    let given: Vec<_> = mark.arguments.iter().flatten().map(|argument| &argument.value.kind).collect();
+    let whole = match given[..] {
+        _ if mark.name.text != "allow" => word.clone(),
+        [ExprKind::Name(_), ExprKind::Text(_)] => written.to_string(),
+        [ExprKind::Name(warning), ..] => format!("@allow({warning}, \"why\")"),
+        _ => "@allow(W0106, \"why\")".to_string(),
+    };
+    Diagnostic::new(Code::E0001, format!("nothing follows `{word}`"), mark.span)
         .at("before what?")
-        .help(format!("write it before a thing or a definition: `{mark} sphere {{ … }}`"))
+        .help(format!("write it before a thing or a definition: `{whole} sphere {{ … }}`"))
+}
+
+/// `post left` in a group, where a part may be called `post`, and a field too.
+pub(in crate::syntax) fn thing_or_field(word: &Name, second: &Name) -> Diagnostic {
+    let (word, second, span) = (&word.text, &second.text, word.span.to(second.span));
+    let thing = match word.as_str() {
+        "lens" => "`lens { … }` for the lens of a camera".to_string(),
+        _ => format!("`{word} {second} {{ … }}` for a thing"),
+    };
+    Diagnostic::new(Code::E0001, format!("`{word} {second}` has no body"), span)
+        .at("`{` is missing behind this, or `:` within")
+        .help(format!("write {thing}, or `{word}: {second}` for a field"))
 }
 
 /// `@off radius: 1m`

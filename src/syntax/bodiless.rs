@@ -1,0 +1,80 @@
+//! Things without a body, as far as they were typed: `sphere ball`, `file.post`.
+
+use super::BLANKS;
+use super::ast::{Broken, Entry, Name};
+use super::build::{Builder, Node, is_reserved};
+use super::errors::{self, statements};
+use crate::span::Span;
+
+impl Builder<'_> {
+    /// `sphere ball`: two words in a body that holds things, which are one without its own. A group has fields too, and
+    /// the lens of a camera is written in both ways; in other things the words are a field.
+    pub(super) fn thing_or_field(&self, word: &Name, value: &Node, span: Span, top: bool) -> Option<Entry> {
+        let second = value.as_str().trim_ascii_end();
+        let holds_things = self.declares.get() || self.grouped.get();
+        if top || !is_name(second) || is_reserved(&word.text) || !(holds_things || &word.text == "lens") {
+            return None;
+        }
+        let name = Name { text: second.into(), span: self.trimmed(value) };
+        self.report(match self.declares.get() {
+            true => errors::missing_body(&format!("{} {second}", word.text), name.span),
+            false => statements::thing_or_field(word, &name),
+        });
+        Some(Entry::Broken(Broken { name: Some(name), span }))
+    }
+
+    /// `file.post`, `file.post left`, `file.`: a thing of a part of a file, as far as it was written. Gives its name.
+    pub(super) fn bodiless_path(&self, first: &Name, end: usize) -> Option<Option<Name>> {
+        let rest = self.after(end);
+        let path = leading(rest, |c| is_part(c) || c == '.');
+        let whole = path.strip_suffix('.').unwrap_or(path);
+        if !whole.split('.').skip(1).all(is_name) {
+            return None;
+        }
+        if whole.len() < path.len() {
+            let place = self.at(end + path.len(), end + path.len());
+            let help = format!("write `{}{path}name {{ … }}`", first.text);
+            self.report(errors::missing_member(place).help(help));
+            return Some(None);
+        }
+        let behind = rest[path.len()..].trim_start_matches(BLANKS);
+        let second = Some(leading(behind, is_part)).filter(|second| is_name(second)).unwrap_or("");
+        let whole = first.span.to(self.at(end, end + path.len()));
+        let path = format!("{}{path}", first.text);
+        let start = end + rest.len() - behind.len();
+        let name = Name { text: second.into(), span: self.at(start, start + second.len()) };
+        let more = behind[second.len()..].trim_start_matches(BLANKS);
+        // `ball.radius = 2m`, `post.height: 1m`
+        if second.is_empty() && more.starts_with(['=', '+', '-', '*', '/', ':']) {
+            return None;
+        }
+        // `file.post height: 1m }`
+        if more.starts_with(':') {
+            self.report(errors::no_brace(&path, whole, name.span));
+            return Some(None);
+        }
+        self.report(match second {
+            "" => errors::missing_body(&path, whole),
+            _ => errors::missing_body(&format!("{path} {second}"), name.span),
+        });
+        Some(Some(name).filter(|_| !second.is_empty()))
+    }
+}
+
+/// Whether a character is one of a word.
+fn is_part(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
+}
+
+/// Whether a text is one word, and may be a name.
+fn is_name(text: &str) -> bool {
+    !text.is_empty()
+        && text.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
+        && !text.starts_with(|c: char| c.is_ascii_digit())
+        && !is_reserved(text)
+}
+
+/// What a text begins with, as far as its characters are of a sort.
+fn leading(text: &str, is: impl Fn(char) -> bool) -> &str {
+    &text[..text.find(|c| !is(c)).unwrap_or(text.len())]
+}
