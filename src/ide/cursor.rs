@@ -277,8 +277,8 @@ impl<'t> Cursor<'t> {
         }
     }
 
-    /// Where the cursor stands right between the parentheses that the value begins with: whether a unit stands behind them,
-    /// which is that of all that they hold.
+    /// Where the cursor stands right between the parentheses that the value begins with: whether a unit stands
+    /// behind them, which is that of all that they hold.
     pub(super) fn in_tuple(&self) -> Option<bool> {
         let open = *self.open.last()?;
         let pieces = || (0..self.entry.len()).map(|index| self.piece(index));

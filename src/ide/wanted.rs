@@ -148,7 +148,8 @@ fn names_behind(text: &str, at: usize) -> Vec<String> {
     names
 }
 
-/// What is wanted of each component, where what is wanted has several; `has_unit` is whether a unit stands behind them all.
+/// What is wanted of each component, where what is wanted has several; `has_unit` is whether a unit stands behind
+/// them all.
 fn component(wanted: FieldType, has_unit: bool) -> Option<Declared> {
     let component = match wanted {
         FieldType::Tuple(..) if has_unit => FieldType::Scalar(units::NONE),
