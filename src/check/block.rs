@@ -7,7 +7,7 @@ use super::program::{
 use super::scope::{Item, Place};
 use super::types::{Element, Kind, Type};
 use super::{Checker, errors};
-use crate::schema::Category;
+use crate::schema::{Category, FieldType};
 use crate::span::Span;
 use crate::syntax::ast::{self, Entry, Keyword, Name, StatementKind as Tree};
 use crate::units;
@@ -155,7 +155,7 @@ impl<'a> Checker<'a> {
         let (kind, ty) = match &statement.kind {
             Tree::Thing { construct, name } => self.drawn(construct, name.as_ref(), slot),
             Tree::Definition { keyword, name, value } => {
-                let (mut checked, ty) = self.infer(value);
+                let (mut checked, ty) = self.defined(*keyword, value);
                 if let ExprKind::Make(make) = &mut checked.kind
                     && let Some(written) = Rc::get_mut(&mut make.written)
                 {
@@ -185,6 +185,19 @@ impl<'a> Checker<'a> {
             }
         };
         (Statement { kind, span: statement.span, off, solo }, ty)
+    }
+
+    /// What a definition gives a name to.
+    fn defined(&mut self, keyword: Keyword, value: &ast::Expr) -> (Expr, Type) {
+        let material = FieldType::Made(Category::Material);
+        let unknown = (keyword == Keyword::Material).then(|| self.unknown_value(material, value)).flatten();
+        match unknown {
+            Some(diagnostic) => {
+                self.report_lost(&self.text(value.span).into(), diagnostic);
+                (Expr::invalid(value.span), Type::Invalid)
+            }
+            None => self.infer(value),
+        }
     }
 
     fn define(&self, slot: Option<usize>, value: Expr) -> StatementKind {

@@ -151,7 +151,9 @@ impl<'t> Cursor<'t> {
         // An entry lies in a body: brackets of values are part of it.
         let body = open.iter().rposition(|index| self.is(&before[*index], "{"));
         let first = body.map_or(0, |body| open[body] + 1).max(begins);
-        self.entry = self.entry_of(&before[first..]).iter().map(|(_, range)| range.clone()).collect();
+        let entry: Vec<Range<usize>> =
+            self.entry_of(&before[first..]).iter().map(|(_, range)| range.clone()).collect();
+        self.entry = self.without_prefixes(&entry).to_vec();
     }
 
     /// The last entry of those of a body.
@@ -244,12 +246,11 @@ impl<'t> Cursor<'t> {
             matches!(lexeme, Lexeme::Word | Lexeme::Number | Lexeme::Color | Lexeme::Text)
         }) || matches!(last_text, ")" | "]" | "}");
         let begun: Vec<&str> = (0..self.entry.len()).map(|index| self.piece(index)).collect();
-        let begun = self.without_prefixes(&begun);
         let is_word = |word: &str| {
             matches!(word, "and" | "or" | "not" | "to" | "then" | "else" | "in" | "if" | "assert")
         };
         let after_operand = operand && !is_word(last_text);
-        match begun {
+        match begun.as_slice() {
             [] => Spot::Entry,
             ["param", _, ":"] => Spot::Type,
             ["param", _, ":", ty @ ..] if ty.contains(&"=") && after_operand => {
@@ -266,7 +267,7 @@ impl<'t> Cursor<'t> {
             }
             ["for", _, "in", ..] | ["if" | "assert", ..] => Spot::Value(None),
             ["let" | "material" | "fn", _, ..] if begun.contains(&"=") && !after_operand => {
-                Spot::Value(self.wanted(begun))
+                Spot::Value(self.wanted(&begun))
             }
             [_, ":", ..] if !after_operand => Spot::Value(field),
             [_, ":", ..] | ["let" | "material" | "fn", ..] if begun.len() > 2 && after_operand => {
@@ -276,19 +277,60 @@ impl<'t> Cursor<'t> {
         }
     }
 
+    /// Where the cursor stands right between the parentheses that the value begins with: whether a unit stands
+    /// behind them, which is that of all that they hold.
+    pub(super) fn in_tuple(&self) -> Option<bool> {
+        let open = *self.open.last()?;
+        let pieces = || (0..self.entry.len()).map(|index| self.piece(index));
+        let begins = match self.piece(1) {
+            ":" => 1,
+            _ => pieces().position(|piece| piece == "=")?,
+        };
+        if self.entry.get(begins + 1)?.start != open || self.piece(begins + 1) != "(" {
+            return None;
+        }
+        let mut depth = 0usize;
+        let mut pieces = lex(self.text, open);
+        let closer = pieces.find(|(lexeme, range)| {
+            match (lexeme, self.text.as_bytes()[range.start]) {
+                (Lexeme::Mark, b'(' | b'[' | b'{') => depth += 1,
+                (Lexeme::Mark, b')' | b']' | b'}') => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            depth == 0
+        });
+        let end = closer.map_or(self.text.len(), |(_, range)| range.end);
+        Some(pieces.next().is_some_and(|(lexeme, range)| lexeme == Lexeme::Word && range.start == end))
+    }
+
+    /// Whether the word stands in the head of a function.
+    pub(super) fn declares_function(&self) -> bool {
+        self.piece(0) == "fn" && !(2..self.entry.len()).any(|index| self.piece(index) == "=")
+    }
+
+    /// Whether a statement begins with the word and the names before it, of which each lies inside of the last.
+    pub(super) fn begins_statement(&self) -> bool {
+        let piece = |range: &Range<usize>| &self.text[range.clone()];
+        self.entry
+            .chunks(2)
+            .all(|pair| matches!(pair, [name, dot] if is_name(piece(name)) && piece(dot) == "."))
+    }
+
     /// A value that a definition wants, by the field that wants the same.
     fn wanted(&self, begun: &[&str]) -> Option<String> {
         (begun.first() == Some(&"material")).then(|| "material".to_string())
     }
 
     /// Without what stands before a statement.
-    fn without_prefixes<'b>(&self, begun: &'b [&'b str]) -> &'b [&'b str] {
-        let mut rest = begun;
+    fn without_prefixes<'p>(&self, entry: &'p [Range<usize>]) -> &'p [Range<usize>] {
+        let mut rest = entry;
         while let [first, behind @ ..] = rest
-            && first.starts_with('@')
+            && self.text[first.clone()].starts_with('@')
         {
-            let closer = behind.iter().position(|piece| *piece == ")").map_or(0, |closer| closer + 1);
-            rest = if behind.first() == Some(&"(") { &behind[closer..] } else { behind };
+            let is = |range: &Range<usize>, mark: &str| &self.text[range.clone()] == mark;
+            let closer = behind.iter().position(|range| is(range, ")")).map_or(0, |closer| closer + 1);
+            rest =
+                if behind.first().is_some_and(|range| is(range, "(")) { &behind[closer..] } else { behind };
         }
         rest
     }
@@ -299,7 +341,7 @@ impl<'t> Cursor<'t> {
         if opened_by == "@allow" {
             return if last == "(" { Spot::Warning } else { Spot::Nothing };
         }
-        if self.piece(0) == "fn" && !(2..self.entry.len()).any(|index| self.piece(index) == "=") {
+        if self.declares_function() {
             return if last == ":" || last == "[" { Spot::Type } else { Spot::Nothing };
         }
         let begins = matches!(

@@ -26,6 +26,10 @@ pub fn signatures(
         return vec![];
     }
     let cursor = Cursor::new(&source.text, at);
+    if cursor.declares_function() {
+        // Nothing is called by its own head.
+        return vec![];
+    }
     let Some((open, by)) = cursor.open.last().zip(cursor.opened_by.clone()) else { return vec![] };
     let inside = Inside::of(&source.text, *open, cursor.word.start);
     let bytes = source.text.as_bytes();

@@ -1,6 +1,6 @@
 //! A text that is being typed, mended at the cursor and checked: what completion and signatures are found from.
 
-use super::cursor::Cursor;
+use super::cursor::{Cursor, Spot};
 use super::walk::Piece;
 use super::{Analysis, Stop, Study};
 use crate::check::{self, Filled, Kind, Program, Type};
@@ -52,7 +52,12 @@ pub(super) fn typing<T: Send + Default>(
 impl Typing<'_> {
     /// The names that can be used at the cursor, each with the place of its declaration and what it is.
     pub(super) fn visible(&self) -> Vec<(&SmolStr, Span, &Type)> {
-        let at = Span::new(self.analysis.main, self.cursor.word.start, self.cursor.word.start);
+        // The point before a member is left out of the mended text, which may end there.
+        let at = match self.cursor.spot {
+            Spot::Member(dot) => dot,
+            _ => self.cursor.word.start,
+        };
+        let at = Span::new(self.analysis.main, at, at);
         let scopes = self.analysis.study.notes.scopes.iter().filter(|scope| scope.span.contains(at));
         let mut names: Vec<_> =
             scopes.flat_map(|scope| &scope.names).map(|(name, place, ty)| (name, *place, ty)).collect();

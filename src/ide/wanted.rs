@@ -5,6 +5,7 @@ use super::signature::Inside;
 use super::typing::Typing;
 use crate::check::{Declared, Function, FunctionBody, TYPES, Type, texture_parameters};
 use crate::schema::{Category, Field, FieldType};
+use crate::units;
 
 /// The call between whose parentheses the cursor stands.
 pub(super) struct Call<'t> {
@@ -48,11 +49,15 @@ impl Typing<'_> {
         if let Some(call) = self.call() {
             return call.wanted();
         }
-        match (field, self.body().map(|body| body.kind)) {
+        let wanted = match (field, self.body().map(|body| body.kind)) {
             (Some("material"), None) => Some(Declared::Field(FieldType::Made(Category::Material))),
             (Some(field), Some(kind)) => self.wanted(kind, field),
             (Some(_), None) => None,
             (None, _) => self.wanted_by_statement(),
+        };
+        match (&wanted, self.cursor.in_tuple()) {
+            (Some(Declared::Field(ty)), Some(has_unit)) => component(*ty, has_unit).or(wanted),
+            _ => wanted,
         }
     }
 
@@ -141,6 +146,19 @@ fn names_behind(text: &str, at: usize) -> Vec<String> {
         }
     }
     names
+}
+
+/// What is wanted of each component, where what is wanted has several; `has_unit` is whether a unit stands behind
+/// them all.
+fn component(wanted: FieldType, has_unit: bool) -> Option<Declared> {
+    let component = match wanted {
+        FieldType::Tuple(..) if has_unit => FieldType::Scalar(units::NONE),
+        FieldType::Tuple(_, dim) => FieldType::Scalar(dim),
+        FieldType::IntTuple(_) => FieldType::Int,
+        FieldType::OneOf(types) => return types.iter().find_map(|ty| component(*ty, has_unit)),
+        _ => return None,
+    };
+    Some(Declared::Field(component))
 }
 
 /// A type as it is written; none of what is no type.

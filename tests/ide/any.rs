@@ -70,14 +70,25 @@ fn places(symbols: &[Symbol]) -> Vec<(&str, Span, Span, bool)> {
     within.collect()
 }
 
-/// What is offered for a kind is a scene as it is, but for what only its writer knows.
+/// What is offered for a kind, or for a choice of two values, is a scene as it is, but for what only its writer knows.
 #[test]
 fn kinds_are_offered_with_values_that_fit() {
     let mut tried = 0;
-    for (before, after) in [("", ""), ("sphere { radius: 1m, material: ", " }"), ("camera { ", " }")] {
+    for (before, after) in [
+        ("", ""),
+        ("sphere { radius: 1m, material: ", " }"),
+        ("camera { ", " }"),
+        ("sphere { radius: ", " }"),
+        ("sphere { radius: 1m, place: ", " }"),
+        ("sphere { radius: 1m, material: diffuse { color: ", " } }"),
+        ("camera { look: (0, 0, 0)m, from: ", " }"),
+        ("camera { look: 0, from: (0, ", ", 2)m }"),
+        ("render { size: (", ", 20) }"),
+    ] {
         let source = Source::new("any.rt", format!("{before}{after}")).at(FilePath::root("any.rt"));
         let offered = ide::complete(&root(), &source, before.len(), &Limits::default(), &|| false);
-        let kinds = offered.iter().filter(|offer| matches!(offer.kind, CompletionKind::Kind));
+        let kinds =
+            offered.iter().filter(|offer| matches!(offer.kind, CompletionKind::Kind) || offer.label == "if");
         // A hole without a value is for a name or a file.
         for offer in kinds.filter(|offer| offer.insert.holes.iter().all(|hole| !hole.is_empty())) {
             // Something to be seen by a camera.
@@ -91,7 +102,7 @@ fn kinds_are_offered_with_values_that_fit() {
             tried += 1;
         }
     }
-    assert!(tried > 15, "{tried}");
+    assert!(tried > 20, "{tried}");
 }
 
 /// What is said of the types of what the built-in functions take and give is so.

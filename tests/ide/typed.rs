@@ -3,15 +3,21 @@
 use super::root;
 use rt_lang::eval::Limits;
 use rt_lang::files::FilePath;
-use rt_lang::ide;
+use rt_lang::ide::{self, Completion};
 use rt_lang::source::Source;
 
-/// A text after what has this label was taken at `|`.
-fn taken(marked: &str, label: &str) -> String {
+/// A text without the `|` at which the cursor stands, and what is offered there.
+fn offered(marked: &str) -> (String, Vec<Completion>) {
     let at = marked.find('|').unwrap();
     let text = marked.replacen('|', "", 1);
     let source = Source::new("any.rt", text.as_str()).at(FilePath::root("any.rt"));
     let offered = ide::complete(&root(), &source, at, &Limits::default(), &|| false);
+    (text, offered)
+}
+
+/// A text after what has this label was taken at `|`.
+fn taken(marked: &str, label: &str) -> String {
+    let (text, offered) = offered(marked);
     let offer = offered.iter().find(|offer| offer.label == label).unwrap_or_else(|| panic!("{marked}"));
     let (before, after) = (&text[..offer.replace.start], &text[offer.replace.end..]);
     format!("{before}{}{after}", offer.insert.text)
@@ -46,5 +52,21 @@ fn what_is_written_already_is_not_written_again() {
         ("sphere { rad|, at: (0, 1, 0)m }", "radius", "sphere { radius: 1m, at: (0, 1, 0)m }"),
     ] {
         assert_eq!(taken(marked, label), wanted, "{marked}");
+    }
+}
+
+#[test]
+fn what_cannot_stand_there_is_not_offered() {
+    for (marked, label, stands) in [
+        ("let a = |", "diffuse", false),
+        ("let a = |", "sphere", true),
+        ("let a = sphere { material: | }", "diffuse", true),
+        ("material a = |", "diffuse", true),
+        ("for i in |", "if", false),
+        ("for i in |", "range", true),
+        ("sphere { radius: | }", "if", true),
+    ] {
+        let (_, offered) = offered(marked);
+        assert_eq!(offered.iter().any(|offer| offer.label == label), stands, "{marked}: {label}");
     }
 }

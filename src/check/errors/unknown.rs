@@ -18,6 +18,16 @@ pub(in crate::check) fn unknown_value(
     let guess = closest(text, candidates);
     let diagnostic =
         Diagnostic::new(Code::E0101, format!("unknown name `{text}`"), name.span).at("not known here");
+    if wanted == FieldType::Made(Category::Material) {
+        if is_material(text) {
+            return offer_braces(unknown_name(name, candidates), name.span, text);
+        }
+        let is_near = guess.as_ref().is_some_and(|guess| guess.certain);
+        if let Some(kind) = slip_of_material(text).filter(|_| !is_near) {
+            let diagnostic = diagnostic.help(format!("did you mean `{kind} {{ … }}`?"));
+            return offer_braces(diagnostic, name.span, kind);
+        }
+    }
     match wanted {
         // It is a kind, which makes what is wanted.
         _ if schema::kind(text).is_some() => unknown_name(name, candidates),
@@ -40,6 +50,27 @@ pub(in crate::check) fn unknown_value(
 
 fn is_material(kind: &str) -> bool {
     schema::kind(kind).is_some_and(|kind| kind.get().category == Category::Material)
+}
+
+/// The kind of material that a name is with a slip of typing.
+fn slip_of_material(name: &str) -> Option<&'static str> {
+    let kinds: Vec<&str> =
+        schema::KINDS.iter().map(|kind| kind.name).filter(|kind| is_material(kind)).collect();
+    closest(name, &kinds).filter(|guess| guess.certain).map(|guess| guess.name)
+}
+
+/// Offers to make a thing of a kind in place of a name, where nothing has to be given for that.
+fn offer_braces(diagnostic: Diagnostic, place: Span, kind: &str) -> Diagnostic {
+    let needs_none = |kind: &schema::KindId| {
+        let kind = kind.get();
+        let needs = |rule: &schema::Rule| matches!(rule, schema::Rule::ExactlyOne(_));
+        kind.fields.iter().all(|field| field.default != schema::Preset::Required)
+            && !kind.rules.iter().any(needs)
+    };
+    match schema::kind(kind).filter(needs_none) {
+        Some(_) => diagnostic.offer(format!("write `{kind} {{}}`"), vec![(place, format!("{kind} {{}}"))]),
+        None => diagnostic,
+    }
 }
 
 /// An unknown name is declared inside a body that this one is not in.

@@ -185,8 +185,17 @@ impl Files for World {
             let path = if folder.is_empty() { name.clone() } else { format!("{folder}/{name}") };
             path.starts_with(&self.within) || (name.ends_with('/') && self.within.starts_with(&path))
         };
-        let listed = self.disk.as_ref().map(|disk| disk.list(folder)).unwrap_or_default();
-        listed.into_iter().filter(may).collect()
+        let saved = self.disk.as_ref().map(|disk| disk.list(folder)).unwrap_or_default();
+        // What is open may not be saved yet; it is named by its file, and by the folder it will be in.
+        let open = self.open.keys().filter_map(|path| {
+            let inner = match folder {
+                "" => path.as_str(),
+                folder => path.as_str().strip_prefix(folder)?.strip_prefix('/')?,
+            };
+            Some(inner.split_inclusive('/').next()?.to_string())
+        });
+        let listed: BTreeSet<String> = saved.into_iter().chain(open).filter(may).collect();
+        listed.into_iter().collect()
     }
 
     fn memory(&self) -> Option<&Memory> {

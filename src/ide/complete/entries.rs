@@ -131,19 +131,28 @@ impl List<'_> {
     /// Names that are used as kinds.
     fn prototypes(&mut self, typing: &Typing) {
         for (name, place, ty) in typing.visible() {
-            let used = match ty {
-                Type::Made(making) => making.kind.category() != Category::Material,
-                Type::Part(_) | Type::File(_) => true,
-                _ => false,
-            };
-            if used {
+            if is_used(ty) {
                 let completion = self.push(name, kind_of(ty), Rank::Fits);
-                completion.insert = Insert::with_holes(&format!("{name} {{ ‹› }}"));
+                completion.insert = Insert::with_holes(&used(name));
                 completion.detail = detail_of(ty);
                 completion.doc = doc_of(typing, place);
             }
         }
     }
+}
+
+/// Whether a name that stands for something of a type is used as a kind.
+pub(super) fn is_used(ty: &Type) -> bool {
+    match ty {
+        Type::Made(making) => making.kind.category() != Category::Material,
+        Type::Part(_) | Type::File(_) => true,
+        _ => false,
+    }
+}
+
+/// A name that is used as a kind, with a hole for what its body gives.
+pub(super) fn used(name: &str) -> String {
+    format!("{name} {{ ‹› }}")
 }
 
 /// What the body belongs to in which the cursor stands.

@@ -1,6 +1,6 @@
 //! Values, and what stands inside them.
 
-use super::entries::{doc_of, example};
+use super::entries::{doc_of, example, example_of, is_used, used};
 use super::{List, Rank, detail_of, kind_of};
 use crate::check::{Declared, Function, Kind, Making, Type, describe_wanted, texture_parameters};
 use crate::color;
@@ -48,7 +48,13 @@ impl List<'_> {
         if wanted.is_none() {
             self.colours(Rank::Seldom);
             // No function takes a thing that is made on the spot.
-            let made = KINDS.iter().filter(|kind| kind.category != Category::Block && call.is_none());
+            let takes = |category| match category {
+                Category::Block => false,
+                // A material has a word of its own.
+                Category::Material => typing.cursor.piece(0) != "let",
+                _ => true,
+            };
+            let made = KINDS.iter().filter(|kind| takes(kind.category) && call.is_none());
             made.for_each(|kind| self.kind(kind.name, Rank::Rather));
             ["true", "false"].iter().for_each(|word| self.word(word));
         }
@@ -59,8 +65,19 @@ impl List<'_> {
                 .filter(|kind| placed(kind.category))
                 .for_each(|kind| self.kind(kind.name, Rank::May));
         }
-        self.push("if", CompletionKind::Keyword, Rank::Seldom).insert =
-            Insert::with_holes("if ‹true› then ‹1› else ‹0›");
+        self.choice(wanted.as_ref());
+    }
+
+    /// One of two values of the type that is wanted.
+    fn choice(&mut self, wanted: Option<&Declared>) {
+        let value = match wanted {
+            Some(Declared::Field(ty)) => example_of(*ty),
+            // A list is named or called for, and a thing is named or made for itself.
+            Some(Declared::List(_) | Declared::Thing) => return,
+            Some(Declared::Invalid) | None => "‹1›".into(),
+        };
+        let insert = Insert::with_holes(&format!("if ‹true› then {value} else {value}"));
+        self.push("if", CompletionKind::Keyword, Rank::Seldom).insert = insert;
     }
 
     /// The name of an argument, and an example of it.
@@ -189,12 +206,17 @@ impl List<'_> {
     }
 
     fn members_of(&mut self, typing: &Typing, ty: &Type) {
+        let begins = typing.cursor.begins_statement();
         for (name, place, ty) in inside(typing, ty) {
             let completion = self.push(&name, kind_of(&ty), Rank::Fits);
             completion.detail = detail_of(&ty);
             completion.doc = doc_of(typing, place);
-            if matches!(ty, Type::Function(_)) {
-                completion.insert = Insert::with_holes(&call_of(typing, place, &name));
+            match ty {
+                Type::Function(_) => {
+                    completion.insert = Insert::with_holes(&call_of(typing, place, &name));
+                }
+                ty if begins && is_used(&ty) => completion.insert = Insert::with_holes(&used(&name)),
+                _ => {}
             }
         }
         match ty {
@@ -223,7 +245,12 @@ impl List<'_> {
 
     /// The fields that can be asked of a thing.
     fn fields_of(&mut self, typing: &Typing, kind: Kind) {
+        // What the thing holds hides a field of that name, and a param is held.
+        let held: Vec<String> = self.found.iter().map(|held| held.label.clone()).collect();
         let mut field = |name: &str, doc: &str| {
+            if held.iter().any(|held| held == name) {
+                return;
+            }
             self.push(name, CompletionKind::Field, Rank::May).doc = say::paragraph(doc);
         };
         match kind {

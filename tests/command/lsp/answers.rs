@@ -316,6 +316,26 @@ fn what_fits_is_offered_in_a_broken_statement_too() {
 }
 
 #[test]
+fn a_file_that_is_open_and_not_saved_is_offered_for_import() {
+    let desk = Desk::new();
+    desk.put("saved.rt", "");
+    let mut client = Client::new(&desk);
+    for name in ["new.rt", "saved.rt", "parts/new.rt"] {
+        client.open(name, "sphere { radius: 1m }\n");
+    }
+    client.open("a.rt", "import \"\"\nimport \"parts/\"\n");
+    for (line, character, wanted) in
+        [(0, 8, vec!["ball.rt", "new.rt", "saved.rt", "parts/"]), (1, 14, vec!["parts/new.rt"])]
+    {
+        let offered = client.at("textDocument/completion", "a.rt", line, character).unwrap();
+        let labels: Vec<&str> =
+            offered.as_array().unwrap().iter().filter_map(|item| item["label"].as_str()).collect();
+        assert_eq!(labels, wanted);
+    }
+    assert_eq!(client.end(), Some(0));
+}
+
+#[test]
 fn the_text_is_told_in_its_parts() {
     let desk = Desk::new();
     let mut client = Client::new(&desk);
