@@ -170,7 +170,7 @@ impl Checker<'_> {
         let mut scope = self.scope(place, span);
         for (item, statement) in items.iter().enumerate() {
             let (Item::Statement(_), Some(name)) = (statement, statement.name()) else { continue };
-            let free = statement.drawn() || place == Place::Imported && !statement.param();
+            let free = statement.drawn() || place == Place::Imported;
             match scope.names.get(&name.text) {
                 Some(&first) => self.report(errors::duplicate(name, Some(&scope.known[first].name))),
                 None => {
