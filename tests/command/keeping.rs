@@ -2,6 +2,7 @@
 
 use super::{Desk, assert_same};
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -292,18 +293,16 @@ fn what_is_kept_and_gone_on_from_is_told() {
 #[test]
 fn a_build_that_keeps_nothing_goes_on_after_a_request_to_keep() {
     let desk = desk();
-    let mut child = desk.command("build room.rt --size 200x150 --samples 1000000 -o a.png");
-    let child = child.stderr(Stdio::piped()).spawn().unwrap();
-    let send = |signal: &str| {
-        let kill = Command::new("sh").args(["-c", &format!("kill -{signal} {}", child.id())]).status();
-        assert!(kill.unwrap().success());
-    };
+    let mut child = desk.command("build ball.rt --size 200x150 --samples 1000000 -o a.png");
+    let mut child = child.stderr(Stdio::piped()).spawn().unwrap();
     std::thread::sleep(Duration::from_millis(1500));
-    send("USR1");
-    std::thread::sleep(Duration::from_millis(2500));
-    send("KILL");
-    let said = super::ended(child.wait_with_output().unwrap()).stderr;
-    assert!(said.contains("SIGUSR1") && said.contains("`--checkpoint`"), "{said}");
+    let kill = Command::new("sh").args(["-c", &format!("kill -USR1 {}", child.id())]).status();
+    assert!(kill.unwrap().success());
+    // It says so between two steps of its work.
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
+    assert!(lines.any(|line| line.contains("SIGUSR1") && line.contains("`--checkpoint`")), "it ended");
+    child.kill().unwrap();
+    child.wait().unwrap();
     // What it left goes with the next one.
     assert!(desk.names().contains(&".rtc-a.png.tmp".to_string()), "{:?}", desk.names());
     build(&desk, "--samples 1 -o a.png").expect(0, &[]);
