@@ -187,6 +187,13 @@ impl<'f> Series<'f> {
         &self.sources
     }
 
+    /// What its sweeps set at a moment, as one says it, by what is known of its params: `t = 0.5`.
+    pub fn swept(&self, moment: Moment, inventory: &Inventory) -> Vec<String> {
+        let is_int =
+            |name: &str| inventory.params.iter().any(|param| param.name == name && param.ty == "int");
+        check::swept_words(&self.options.sweep, moment, is_int)
+    }
+
     /// Compiles it at a moment, as [`compile`] does.
     pub fn at(&mut self, moment: Moment) -> Compiled {
         self.options.moment = moment;

@@ -8,13 +8,13 @@
 mod head;
 mod merge;
 
-use crate::output::{Channels, Facts, Picture, Words, decode_words, encode_exr};
+use crate::output::{CannotDecode, Channels, Facts, Picture, Words, decode_words, encode_exr, is_exr};
 use crate::render::film::{MOST_SAMPLES, Pixel, WORDS};
 use crate::render::making::Making;
 use crate::render::{Film, Shown, Window};
 use crate::scene::{Tonemap, identity::Identity};
 pub use head::Head;
-pub use merge::Merging;
+pub use merge::{Merging, most_first};
 use std::fmt;
 use std::ops::Range;
 
@@ -172,8 +172,8 @@ impl Subject {
         texts.sort();
         texts
     }
-    /// Why samples of another subject are none of this one, if they are not.
-    pub fn refuses(&self, other: &Subject) -> Option<String> {
+    /// Why samples of another subject, of which messages tell by this word, are none of this one, if they are not.
+    pub fn refuses(&self, other: &Subject, called: &str) -> Option<String> {
         if self.program != other.program {
             return Some(format!(
                 "it was made by `{}`, and this is {}",
@@ -181,18 +181,18 @@ impl Subject {
                 self.program
             ));
         }
-        let mut differences = self.identity.differences(&other.identity);
-        if self.share != other.share {
-            let name = |share: Option<Share>| {
-                share.map_or("all".to_string(), |Share { index, of, samples }| {
-                    format!("{index}/{of} of {samples} samples")
-                })
-            };
-            differences.push(format!("its share ({}, not {})", name(other.share), name(self.share)));
+        let differences = self.identity.differences(&other.identity, called);
+        if !differences.is_empty() {
+            return Some(format!("it is of another picture: {}", differences.join(", ")));
         }
-        let (last, others) = differences.split_last()?;
-        let and = if others.is_empty() { String::new() } else { format!("{} and ", others.join(", ")) };
-        Some(format!("it is of another picture, which differs in {and}{last}"))
+        if self.share == other.share {
+            return None;
+        }
+        let name = |share: Option<Share>| match share {
+            Some(Share { index, of, samples }) => format!("`--shard {index}/{of} --samples {samples}`"),
+            None => "no `--shard`".to_string(),
+        };
+        Some(format!("it has other samples: {} ({called}: {})", name(self.share), name(other.share)))
     }
 }
 
@@ -200,19 +200,27 @@ impl Saved {
     /// Reads a file. Its pixels are read only where its head promises the sums, and nothing besides that takes memory.
     pub fn decode(file: &[u8]) -> Result<Saved, Refused> {
         let head = Head::decode(file)?;
-        let mut words = decode_words(file).map_err(|reason| Refused(format!("is no EXR: {reason}")))?;
+        let mut words = decode_words(file).map_err(|reason| unreadable(file, reason))?;
         words.sort_by_key(|words| CHANNELS.iter().position(|name| *name == words.name));
         let Head { subject, facts, window, start, scale, judged, texts, checksum: said } = head;
         let channels = Channels { words, texts, ..Channels::default() };
         if !channels.words.iter().map(|words| words.name.as_str()).eq(CHANNELS)
             || said != Some(checksum(&channels, &facts))
         {
-            return refused("is damaged: its checksum is another");
+            return refused("is damaged: what it holds is not what was written");
         }
         let making = making(window, start, scale, judged, &channels.words)
             .ok_or_else(|| Refused("holds numbers that are no sums of samples".into()))?;
         Ok(Saved { subject, making, facts })
     }
+}
+
+/// Why nothing can be read of a file.
+fn unreadable(file: &[u8], reason: CannotDecode) -> Refused {
+    Refused(match is_exr(file) {
+        true => format!("cannot be read: {reason}"),
+        false => format!("is no checkpoint and no share of a picture: {reason}"),
+    })
 }
 
 /// Exposure and curve, as `0.5 neutral`.

@@ -30,7 +30,7 @@ pub use functions::{Function, Way};
 pub use notes::{Filled, Home, Meaning, Notes, Visible};
 pub use program::*;
 pub use setting::{Setting, blame, settings};
-pub use sweep::Moment;
+pub use sweep::{Moment, words as swept_words};
 pub use textures::parameters as texture_parameters;
 pub use types::{Element, FieldSet, Kind, Making, Type, describe_wanted};
 

@@ -103,6 +103,32 @@ pub(super) fn sweeps(
     diagnostics
 }
 
+/// What sweeps set at a moment, as one says it: `t = 0.5`, or `t = mix(A, B, 0.5)` where that is no single number.
+pub fn words(given: &[String], moment: Moment, is_int: impl Fn(&str) -> bool) -> Vec<String> {
+    let mut sources = Sources::default();
+    let (settings, _) = setting::settings(&mut sources, &[], given, moment);
+    let words = |setting: &Setting| {
+        let [a, b] = setting.ends.as_deref()?;
+        let Tree::Call { arguments, .. } = &setting.value.kind else { return None };
+        let Tree::Number { value: share, .. } = arguments.last()?.value.kind else { return None };
+        let mixed = |a: f64, b: f64| {
+            let value = a * (1.0 - share) + b * share;
+            if is_int(&setting.name.text) { value.round() } else { value }
+        };
+        let value = match (&a.kind, &b.kind) {
+            (Tree::Number { value: a, .. }, Tree::Number { value: b, .. }) => mixed(*a, *b).to_string(),
+            (Tree::Quantity { value: a, unit }, Tree::Quantity { value: b, unit: other })
+                if unit.text == other.text =>
+            {
+                format!("{}{}", mixed(*a, *b), unit.text)
+            }
+            _ => format!("mix({}, {}, {share})", sources.text(a.span), sources.text(b.span)),
+        };
+        Some(format!("{} = {value}", setting.name.text))
+    };
+    settings.iter().filter_map(words).collect()
+}
+
 /// Where the word stands between two values: outside of brackets and texts.
 fn until(text: &str) -> Option<usize> {
     let (mut depth, mut quoted, mut escaped) = (0u32, false, false);
@@ -180,6 +206,14 @@ mod tests {
         assert_eq!(shares(5, Last::End), [0.0, 0.25, 0.5, 0.75, 1.0]);
         assert_eq!(shares(4, Last::Before), [0.0, 0.25, 0.5, 0.75]);
         assert_eq!((shares(1, Last::End), shares(1, Last::Before)), (vec![0.0], vec![0.0]));
+    }
+
+    #[test]
+    fn what_a_frame_has_is_said_as_it_is_written() {
+        let given = ["t = 0 to 3", "angle = 0deg until 360deg", "n = 1 to 4", "at = (0, 1)m to (1, 1)m", "t"];
+        let moment = Moment { index: 1, of: 3 };
+        let said = words(&given.map(String::from), moment, |name| name == "n");
+        assert_eq!(said, ["t = 1.5", "angle = 120deg", "n = 3", "at = mix((0, 1)m, (1, 1)m, 0.5)"]);
     }
 
     #[test]

@@ -9,7 +9,7 @@ mod why;
 
 pub use animating::{Animating, Only};
 use clap::{Args, Parser, Subcommand};
-use keeping::noise;
+pub use keeping::noise;
 pub use keeping::{Every, Halting, Keeping, Resume, Shard};
 pub use merge::Merge;
 use rt_lang::aov::Aov;

@@ -1,7 +1,7 @@
 //! `rtc build`: scenes to pictures.
 
 use super::animate::{self, has_number};
-use super::args::{Build, Keeping, Resume};
+use super::args::{Build, Keeping};
 use super::denoise;
 use super::input::is_standard;
 use super::interrupt::Interrupt;
@@ -10,7 +10,7 @@ use super::progress::duration;
 use super::target::{Staged, Target, patiently};
 use super::terminal::Terminal;
 use super::trace::{Plan, Traced, take, trace};
-use super::{Exit, Problem, scene as scenes};
+use super::{Exit, Problem, keep, scene as scenes, shard};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use rt_lang::aov::Aov;
 use rt_lang::diagnostic::Diagnostic;
@@ -55,9 +55,8 @@ impl<'a> Context<'a> {
     ) -> Result<Context<'a>, Problem> {
         let threads = ThreadPoolBuilder::new().num_threads(arguments.taking.threads.unwrap_or(0)).build();
         let threads = threads.map_err(|error| Problem::new(format!("cannot start the threads: {error}")))?;
-        if arguments.keeping.keeps() {
-            interrupt.heed_requests();
-        } else {
+        interrupt.heed_requests();
+        if !arguments.keeping.keeps() {
             let Keeping { wait, checkpoint_every, .. } = &arguments.keeping;
             let told = [
                 (wait.is_some(), "`--wait` is for work that is kept: else nobody is in the way"),
@@ -69,6 +68,15 @@ impl<'a> Context<'a> {
             }
         }
         Ok(Context { arguments, threads, terminal, interrupt })
+    }
+
+    /// Where nothing is kept, a request to keep what there is cannot be heeded, and is no reason to stop.
+    pub fn refuse_request(&self) {
+        if self.interrupt.is_requested() {
+            self.terminal.line(
+                "SIGUSR1 asks to keep the samples, and nothing says where: `--checkpoint` does; the picture goes on",
+            );
+        }
     }
 }
 
@@ -94,6 +102,7 @@ pub fn run(arguments: &Build, terminal: Terminal, interrupt: &Interrupt) -> Resu
 /// What goes where. Everything that can be seen to be wrong before a file is read is found here.
 fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
     let scenes = &arguments.scenes;
+    keep::refuse_loose_files(arguments)?;
     if let Some(twice) = first_repeated(scenes) {
         return Err(Problem::new(format!("the scene `{}` is given twice", twice.display())));
     }
@@ -132,8 +141,8 @@ fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
     for job in &jobs {
         refuse_idle_aovs(&arguments.aov, &job.targets)?;
     }
-    refuse_what_shares_cannot(arguments, &all)?;
-    refuse_checkpoints_of_others(arguments)?;
+    shard::refuse_what_shares_cannot(arguments, &all)?;
+    keep::refuse_checkpoints_of_others(arguments)?;
     denoise::refuse(arguments)?;
     if on_standard_output(&arguments.messages) && all.iter().any(|target| is_standard(&target.path)) {
         let problem = Problem::new("the picture and the messages would both go to standard output");
@@ -193,46 +202,6 @@ pub fn refuse_idle_aovs(wanted: &[Aov], targets: &[Target]) -> Result<(), Proble
     Err(problem.help("write one, maybe beside another: `-o picture.png -o picture.exr`"))
 }
 
-/// A checkpoint is of one scene, and is none itself.
-fn refuse_checkpoints_of_others(arguments: &Build) -> Result<(), Problem> {
-    let named = match &arguments.keeping {
-        Keeping { checkpoint: Some(Some(file)), .. } | Keeping { resume: Some(Resume::From(file)), .. } => {
-            file
-        }
-        _ => return Ok(()),
-    };
-    if arguments.scenes.len() > 1 {
-        let problem = Problem::new("several scenes cannot be kept in one file");
-        return Err(problem.help("without its name each checkpoint goes beside its picture"));
-    }
-    refuse_inputs_as_outputs(&arguments.scenes, std::slice::from_ref(named))
-}
-
-/// A share has so many samples and nothing else, and is an EXR.
-fn refuse_what_shares_cannot(arguments: &Build, targets: &[Target]) -> Result<(), Problem> {
-    if arguments.keeping.shard.is_none() {
-        return Ok(());
-    }
-    let fixed = "every share must know its samples before: give `--samples N`";
-    let idle = match arguments {
-        Build { halting, .. } if halting.time.is_some() => Some(("--time", fixed)),
-        Build { taking, .. } if taking.noise.is_some() => Some(("--noise", fixed)),
-        Build { aov, .. } if !aov.is_empty() => {
-            Some(("--aov", "make these channels apart, with a few samples"))
-        }
-        Build { feedback: true, .. } => Some(("--feedback", "it is of the whole picture: ask for it apart")),
-        _ => None,
-    };
-    if let Some((flag, help)) = idle {
-        return Err(Problem::new(format!("`--shard` and `{flag}` do not go together")).help(help));
-    }
-    if targets.iter().all(|target| target.format == Format::Exr) {
-        return Ok(());
-    }
-    let problem = Problem::new("a share of a picture is an EXR, which holds its exact sums");
-    Err(problem.help("say where it goes: `-o part1.exr`"))
-}
-
 fn first_repeated(paths: &[PathBuf]) -> Option<&PathBuf> {
     let known: Vec<PathBuf> = paths.iter().map(|path| same(path)).collect();
     (1..paths.len()).find(|&i| known[..i].contains(&known[i])).map(|i| &paths[i])
@@ -287,6 +256,7 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
     if !arguments.quiet {
         compiled.notes.iter().for_each(|note| terminal.line(note));
         terminal.line(&summary(job, scene, &traced, start.elapsed()));
+        traced.account.line().iter().for_each(|line| terminal.line(line));
     }
     Ok(exit)
 }
@@ -337,14 +307,19 @@ fn summary(job: &Job, scene: &Scene, traced: &Traced, time: Duration) -> String 
     format!("{names}: {width}×{height}, {samples} in {}{denoised}, {exposure}", duration(time))
 }
 
+/// The least and the most samples of a pixel, and their mean, in words.
+pub fn count([least, most]: [u32; 2], mean: f64) -> String {
+    match (least, most) {
+        (1, 1) => "1 sample".to_string(),
+        (least, most) if least == most => format!("{most} samples"),
+        _ => format!("{least} to {most} samples ({mean:.0} on average)"),
+    }
+}
+
 /// How many samples were taken, what noise they leave, and why no more.
 pub fn samples(traced: &Traced) -> String {
     let Traced { samples: [least, most], mean_samples, .. } = *traced;
-    let count = match (least, most) {
-        (1, 1) => "1 sample".to_string(),
-        (least, most) if least == most => format!("{most} samples"),
-        _ => format!("{least} to {most} samples ({mean_samples:.0} on average)"),
-    };
+    let count = count([least, most], mean_samples);
     let share = traced.sums.as_ref().and_then(|(subject, _)| subject.share);
     let share = share.map_or(String::new(), |share| format!(", share {share}"));
     let noise = traced.facts.noise.map_or(String::new(), |noise| format!(" (noise {:.2} %)", noise * 100.0));

@@ -1,11 +1,12 @@
 //! Files beside a place, to be written and then moved there.
 //!
-//! Some are always called the same, and are of one process at a time: of the one that holds the file's lock while the name is
+//! They are always called the same, and are of one process at a time: of the one that holds the file's lock while the name is
 //! that of this file. What a process has left that was killed is nobody's, and goes when the next one comes. Nobody removes or
 //! moves a file of that name but under its lock, and only after seeing that the name is still of it: between making a file and
 //! locking it others may come, who take it for one that was left.
 //!
-//! The disks of some farms know no locks. There a file gets a name that no other has, and what was left stays.
+//! The disks of some farms know no locks. There a file gets a name that no other has, and what was left stays. So does what
+//! several processes write at once, where that is no error.
 //!
 //! What is left must not stand in the way of the next one, so a file can always be written by its owner while it is beside its
 //! place, whatever the permissions are that it gets when it is moved there.
@@ -13,26 +14,37 @@
 use super::interrupt::Interrupt;
 use std::fs::{self, File, OpenOptions, Permissions, TryLockError};
 use std::io::{self, ErrorKind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
 /// How the names of files end that are being written.
 const SUFFIX: &str = ".tmp";
 
+/// How they begin.
+const PREFIX: &str = ".rtc-";
+
 /// How often others may come between before it is said that they are at it.
 const ATTEMPTS: u32 = 16;
 
-/// Makes a file in a folder by a name that no other has. Its owner may write it, and besides it has these permissions, or those that
-/// the umask leaves.
+/// The file beside a place of this name.
+pub fn path(folder: &Path, name: &str) -> PathBuf {
+    folder.join(format!("{PREFIX}{name}{SUFFIX}"))
+}
+
+/// Makes a file in a folder for what is to be called so, also while another process has one for the same. Its owner may write it,
+/// and besides it has these permissions, or those that the umask leaves. It is that of [`always`], so that what a process has
+/// left that was killed goes when the next one writes the same; or has a name that no other has, where that one cannot be had.
 pub fn any(
     folder: &Path,
+    name: &str,
     permissions: Option<Permissions>,
     interrupt: &Interrupt,
 ) -> io::Result<NamedTempFile> {
-    create(interrupt, || builder(permissions).prefix(".rtc-").tempfile_in(folder))
+    always(folder, name, permissions.clone(), interrupt)
+        .or_else(|_| create(interrupt, || builder(permissions).prefix(PREFIX).tempfile_in(folder)))
 }
 
-/// Makes the file `.NAME.tmp` in a folder and takes it for this process. While it is of another one the error is
+/// Makes the file `.rtc-NAME.tmp` in a folder and takes it for this process. While it is of another one the error is
 /// [`ErrorKind::ResourceBusy`], and where there is something that is no plain file [`ErrorKind::InvalidInput`].
 pub fn always(
     folder: &Path,
@@ -40,7 +52,7 @@ pub fn always(
     permissions: Option<Permissions>,
     interrupt: &Interrupt,
 ) -> io::Result<NamedTempFile> {
-    let (prefix, path) = (format!(".{name}"), folder.join(format!(".{name}{SUFFIX}")));
+    let (prefix, path) = (format!("{PREFIX}{name}"), path(folder, name));
     for _ in 0..ATTEMPTS {
         // Not while a file is being made, for whoever is asked to end waits for that, and these files are of others.
         let made = remove_left(&path).and_then(|()| {
@@ -175,13 +187,30 @@ mod tests {
     #[test]
     fn a_name_is_of_one_at_a_time_and_what_was_left_goes() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join(".a.png.tmp");
+        let path = folder.path().join(".rtc-a.png.tmp");
         fs::write(&path, "of one that was killed").unwrap();
         let first = claimed(folder.path()).unwrap();
         assert_eq!((first.path(), fs::read(&path).unwrap()), (path.as_path(), vec![]));
         assert_eq!(claimed(folder.path()).unwrap_err().kind(), ErrorKind::ResourceBusy);
         drop(first);
         assert!(claimed(folder.path()).is_ok() && !path.exists());
+    }
+
+    #[test]
+    fn a_name_that_another_has_is_no_reason_to_stop_and_what_was_left_goes() {
+        let folder = tempfile::tempdir().unwrap();
+        let any = |name: &str| super::any(folder.path(), name, None, &Interrupt::default()).unwrap();
+        let path = folder.path().join(".rtc-a.png.tmp");
+        fs::write(&path, "of one that was killed").unwrap();
+        let (first, second) = (any("a.png"), any("a.png"));
+        assert_eq!((first.path(), fs::read(&path).unwrap()), (path.as_path(), vec![]));
+        assert_ne!(second.path(), path);
+        // With what stands around it, it is too long for a name.
+        drop((first, second, any(&"n".repeat(250))));
+        fs::create_dir(&path).unwrap();
+        drop(any("a.png"));
+        let left = fs::read_dir(folder.path()).unwrap().count();
+        assert_eq!(left, 1, "the folder alone, which is nobody's to remove");
     }
 
     #[test]
@@ -212,7 +241,7 @@ mod tests {
     #[test]
     fn a_name_that_is_of_another_by_now_is_left_to_it() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join(".a.png.tmp");
+        let path = folder.path().join(".rtc-a.png.tmp");
         let file = claimed(folder.path()).unwrap();
         fs::remove_file(&path).unwrap();
         fs::write(&path, "of another").unwrap();
@@ -230,7 +259,7 @@ mod tests {
     #[test]
     fn a_pipe_is_not_waited_for() {
         let folder = tempfile::tempdir().unwrap();
-        let made = std::process::Command::new("mkfifo").arg(folder.path().join(".a.png.tmp")).status();
+        let made = std::process::Command::new("mkfifo").arg(folder.path().join(".rtc-a.png.tmp")).status();
         assert!(made.unwrap().success());
         assert_eq!(claimed(folder.path()).unwrap_err().kind(), ErrorKind::InvalidInput);
     }

@@ -59,7 +59,7 @@ impl Interrupt {
     pub fn heed_requests(&self) {
         #[cfg(unix)]
         {
-            // Where it cannot be heeded it ends the process, as it does one that keeps nothing.
+            // Where it cannot be heeded it ends the process.
             let _ = signal_hook::flag::register(signal_hook::consts::SIGUSR1, self.requested.clone());
         }
     }
@@ -75,12 +75,12 @@ impl Interrupt {
         self.keeps.store(true, SeqCst);
     }
 
-    /// Ends the process if that was asked for.
-    pub fn kept(&self, terminal: Terminal) {
+    /// Ends the process if that was asked for, and says what was kept.
+    pub fn kept(&self, terminal: Terminal, said: Option<String>) {
         self.keeps.store(false, SeqCst);
         // Asked before, nobody else does it.
         if self.asked.load(SeqCst) {
-            self.leave(terminal)
+            self.leave(terminal, said)
         }
     }
 
@@ -158,10 +158,10 @@ impl Interrupt {
         if control.is_some() {
             std::thread::sleep(GRACE);
         }
-        self.leave(terminal)
+        self.leave(terminal, None)
     }
 
-    fn leave(&self, terminal: Terminal) -> ! {
+    fn leave(&self, terminal: Terminal, said: Option<String>) -> ! {
         // Held until the process is gone, so that nobody makes or moves a file from here on.
         let unfinished = held_soon(&self.unfinished);
         std::mem::take(&mut *lock(&self.children)).into_values().for_each(kill);
@@ -172,7 +172,8 @@ impl Interrupt {
             // Past the progress bar.
             terminal.line("");
         }
-        terminal.line("interrupted");
+        let kept = said.map_or(String::new(), |said| format!("; {said}"));
+        terminal.line(&format!("interrupted{kept}"));
         std::process::exit(Exit::Interrupted as i32);
     }
 }

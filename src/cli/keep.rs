@@ -1,18 +1,25 @@
 //! Keeps the samples of a picture in the making, and goes on from them.
 
-use super::args::{Every, Keeping, Resume};
+use super::args::{Build, Every, Keeping, Resume};
 use super::interrupt::Interrupt;
 use super::target::{Aside, Target};
 use super::terminal::Terminal;
 use super::{Problem, build, input};
 use rt_lang::output::{Facts, MOST_PIXELS};
 use rt_lang::render::making::Making;
-use rt_lang::saved::{self, CHANNELS, Saved, Subject};
+use rt_lang::saved::{self, CHANNELS, Head, Saved, Subject};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// The largest file of samples that is read: the most pixels, uncompressed, and a little more.
 pub const LARGEST: u64 = MOST_PIXELS * 4 * (CHANNELS.len() as u64 + 5);
+
+/// The bytes of a file that are looked at for what it is of: the head of one is far smaller.
+const HEAD: u64 = 1 << 18;
+
+/// What messages call the samples that are there, where they are of another picture.
+pub const CALLED: &str = "kept";
 
 /// How many times as long as keeping them took samples are traced before they are kept again, so that a large picture is not kept
 /// for more of the time than it is made.
@@ -33,6 +40,42 @@ impl Places {
     pub fn yielding(self) -> Places {
         Places { yields: true, ..self }
     }
+}
+
+/// A checkpoint is of one scene, and is none itself.
+pub fn refuse_checkpoints_of_others(arguments: &Build) -> Result<(), Problem> {
+    let named = match &arguments.keeping {
+        Keeping { checkpoint: Some(Some(file)), .. } | Keeping { resume: Some(Resume::From(file)), .. } => {
+            file
+        }
+        _ => return Ok(()),
+    };
+    if arguments.scenes.len() > 1 {
+        let problem = Problem::new("several scenes cannot be kept in one file");
+        return Err(problem.help("without its name each checkpoint goes beside its picture"));
+    }
+    build::refuse_inputs_as_outputs(&arguments.scenes, std::slice::from_ref(named))
+}
+
+/// The file of `--checkpoint FILE`, with a space, is taken for a scene.
+pub fn refuse_loose_files(arguments: &Build) -> Result<(), Problem> {
+    let Build { scenes, outputs, animating, keeping, .. } = arguments;
+    let flag = match keeping {
+        Keeping { checkpoint: Some(None), .. } => "--checkpoint",
+        Keeping { resume: Some(Resume::Auto), .. } => "--resume",
+        _ => return Ok(()),
+    };
+    let of_one = !outputs.is_empty() || animating.frames.is_some();
+    let is_loose = |scene: &&PathBuf| {
+        !input::is_standard(scene)
+            && scene.extension().is_none_or(|extension| extension != "rt")
+            && (of_one || !scene.exists())
+    };
+    let Some(file) = scenes.iter().find(is_loose).filter(|_| scenes.len() > 1) else { return Ok(()) };
+    let file = file.display();
+    let problem =
+        Problem::new(format!("`{file}` is taken for a scene, and is probably the file of `{flag}`"));
+    Err(problem.help(format!("a file stands behind `=`, without a space: `{flag}={file}`")))
 }
 
 /// The places that flags name, for a picture that goes to these targets; none where nothing is to be kept.
@@ -71,6 +114,59 @@ pub fn beside(targets: &[Target]) -> Result<PathBuf, Problem> {
     Ok(name.into())
 }
 
+/// Which of a picture's samples were there before, and where they are kept.
+#[derive(Default)]
+pub struct Account {
+    from: Option<Amount>,
+    to: Option<Amount>,
+}
+
+/// What a file of samples says that it is of; none where it is no such file.
+pub fn head(path: &Path) -> Option<Head> {
+    let mut head = vec![];
+    input::open_plain(path).and_then(|file| file.take(HEAD).read_to_end(&mut head)).ok()?;
+    Head::decode(&head).ok()
+}
+
+/// Samples in a file.
+#[derive(Clone)]
+struct Amount {
+    /// How many, in words.
+    samples: String,
+    /// How many a pixel has on average.
+    mean: f64,
+    file: PathBuf,
+}
+
+impl Amount {
+    fn of(making: &Making, file: &Path) -> Amount {
+        let mean = making.mean_samples();
+        Amount { samples: build::count(making.samples(), mean), mean, file: file.into() }
+    }
+}
+
+impl Account {
+    /// From what it was gone on, in words.
+    pub fn went_on(&self) -> Option<String> {
+        let from = self.from.as_ref()?;
+        Some(format!("went on from {} in `{}`", from.samples, from.file.display()))
+    }
+
+    /// A line about both.
+    pub fn line(&self) -> Option<String> {
+        let kept = self.to.as_ref().map(|to| {
+            let there = self.from.as_ref().filter(|from| from.file == to.file);
+            match there {
+                Some(from) if from.mean == to.mean => "where nothing was left to trace".to_string(),
+                Some(_) => format!("kept {} there", to.samples),
+                None => format!("kept {} in `{}`", to.samples, to.file.display()),
+            }
+        });
+        let parts: Vec<String> = self.went_on().into_iter().chain(kept).collect();
+        (!parts.is_empty()).then(|| parts.join(", "))
+    }
+}
+
 /// Keeps samples every now and then.
 pub struct Keeper<'a> {
     places: Places,
@@ -86,6 +182,7 @@ pub struct Keeper<'a> {
     last: (Instant, f64),
     /// How long that took.
     cost: Duration,
+    account: Account,
     /// Whether it was said that they cannot be kept.
     complained: bool,
 }
@@ -100,8 +197,8 @@ impl<'a> Keeper<'a> {
         terminal: Terminal,
     ) -> Keeper<'a> {
         let last = (Instant::now(), 0.0);
-        let (held, cost) = (None, Duration::ZERO);
-        Keeper { places, every, subject, facts, interrupt, terminal, held, last, cost, complained: false }
+        let (held, cost, account, complained) = (None, Duration::ZERO, Account::default(), false);
+        Keeper { places, every, subject, facts, interrupt, terminal, held, last, cost, account, complained }
     }
 
     /// The picture to go on with; none where there is nothing to go on from. What differs is an error, in what `refuses` says
@@ -118,25 +215,39 @@ impl<'a> Keeper<'a> {
             return Ok(None);
         }
         let bytes = input::read_plain(path, LARGEST)?;
-        let cannot = |why: String| {
+        let cannot = |why: String, help: &str| {
             let problem = Problem::new(format!("cannot go on from `{}`: {why}", path.display()));
             match self.places.yields {
                 true => problem.help("remove that file, and the frame is made from its beginning"),
-                false => problem.help(
-                    "`--resume=never` begins afresh, `--checkpoint=FILE` keeps the samples elsewhere, and `rtc develop` makes \
-                     a picture of those that are there",
-                ),
+                false => problem.help(help),
             }
         };
-        let saved = Saved::decode(&bytes).map_err(|why| cannot(format!("it {why}")))?;
-        match self.subject.refuses(&saved.subject).or_else(|| refuses(&saved.making)) {
+        let saved = Saved::decode(&bytes).map_err(|why| {
+            let help = match must_be {
+                true => "name a file that `--checkpoint` wrote, or begin afresh with `--resume=never`",
+                false => {
+                    "`--resume=never` begins afresh and replaces it, `--checkpoint=FILE` keeps the samples elsewhere"
+                }
+            };
+            cannot(format!("it {why}"), help)
+        })?;
+        match self.subject.refuses(&saved.subject, CALLED).or_else(|| refuses(&saved.making)) {
             Some(why) if self.places.yields => {
                 self.terminal.line(&format!("`{}` is not gone on from: {why}", path.display()));
                 Ok(None)
             }
-            Some(why) => Err(cannot(why)),
+            Some(why) => Err(cannot(
+                why,
+                "`--resume=never` begins afresh, `--checkpoint=FILE` keeps the samples elsewhere, and `rtc develop` makes a \
+                 picture of those that are there",
+            )),
             None => {
                 self.last.1 = saved.making.mean_samples();
+                let from = Amount::of(&saved.making, path);
+                if build::same(path) == build::same(&self.places.to) {
+                    self.account.to = Some(from.clone());
+                }
+                self.account.from = Some(from);
                 Ok(Some(saved.making))
             }
         }
@@ -157,12 +268,32 @@ impl<'a> Keeper<'a> {
         let kept = self.write(making);
         self.cost = start.elapsed();
         self.last = (Instant::now(), making.mean_samples());
-        if let Err(problem) = kept
-            && !self.complained
-        {
-            self.terminal.problem(&problem.help("the samples are not kept; the picture goes on"));
-            self.complained = true;
+        match kept {
+            Ok(()) => self.account.to = Some(Amount::of(making, &self.places.to)),
+            Err(problem) if !self.complained => {
+                self.terminal.problem(&problem.help("the samples are not kept; the picture goes on"));
+                self.complained = true;
+            }
+            Err(_) => {}
         }
+    }
+
+    /// Keeps the samples when no more come for now, unless there are none, or they are kept already.
+    pub fn finish(&mut self, making: &Making) {
+        let kept = self.account.to.as_ref().map_or(0.0, |to| to.mean);
+        if making.mean_samples() > kept {
+            self.keep(making);
+        }
+    }
+
+    /// What is kept by now, in words.
+    pub fn kept(&self) -> Option<String> {
+        self.account.to.as_ref().map(|to| format!("kept {} in `{}`", to.samples, to.file.display()))
+    }
+
+    /// What was there before, and what is kept now.
+    pub fn account(self) -> Account {
+        self.account
     }
 
     fn write(&self, making: &Making) -> Result<(), Problem> {

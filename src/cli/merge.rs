@@ -5,11 +5,11 @@ use super::interrupt::Interrupt;
 use super::keep::LARGEST;
 use super::target::Staged;
 use super::terminal::Terminal;
-use super::{Exit, Problem, build, input};
+use super::{Exit, Problem, build, input, keep};
 use rt_lang::output::{Channels, Facts};
 use rt_lang::render::halt::Limit;
-use rt_lang::saved::{self, Merging, Saved};
-use std::path::Path;
+use rt_lang::saved::{self, Head, Merging, Saved};
+use std::path::{Path, PathBuf};
 
 /// The attribute of an EXR that tells which part of the picture's samples it has, where some are missing.
 const SHARES: &str = "rtc.shares";
@@ -23,7 +23,7 @@ pub fn run(arguments: &Merge, terminal: Terminal, interrupt: &Interrupt) -> Resu
     let staged: Vec<Staged> =
         targets.iter().map(|target| target.stage(interrupt)).collect::<Result<_, _>>()?;
     let mut merging: Option<Merging> = None;
-    for path in &arguments.parts {
+    for path in in_order(arguments)? {
         let added = add(merging.as_mut(), path);
         match added {
             Ok(None) => {}
@@ -66,15 +66,41 @@ pub fn run(arguments: &Merge, terminal: Terminal, interrupt: &Interrupt) -> Resu
     Ok(Exit::Done)
 }
 
+/// The files such that those come first which go with most of the others, so that it is an odd one that is refused.
+fn in_order(arguments: &Merge) -> Result<Vec<&Path>, Problem> {
+    let parts: Vec<&Path> = arguments.parts.iter().map(PathBuf::as_path).collect();
+    let heads: Vec<Option<Head>> = parts.iter().map(|path| keep::head(path)).collect();
+    match saved::most_first(&heads) {
+        Ok(order) => Ok(order.into_iter().map(|at| parts[at]).collect()),
+        // It is said in what they differ when they are put together.
+        Err(_) if !arguments.partial => Ok(parts),
+        Err([one, other]) => {
+            let [one, other] = [one, other].map(|at| parts[at].display());
+            let problem = format!(
+                "`{one}` and `{other}` are shares of different pictures, and there are as many that go with the one as with the \
+                 other"
+            );
+            Err(Problem::new(problem)
+                .help("give those of one picture; without `--partial` it is said in what they differ"))
+        }
+    }
+}
+
 /// Adds the share of a file to those before it, or begins with it.
 fn add(merging: Option<&mut Merging>, path: &Path) -> Result<Option<Merging>, Problem> {
     let name = path.display().to_string();
     let bytes = input::read_bytes(path, LARGEST)?;
-    let refuse = |why: saved::Refused| {
-        Problem::new(format!("`{name}` {why}"))
-            .help("give each share once, make one that is damaged again with `--shard I/N`, or have `--partial` leave out what does not go with the others")
+    let cannot = |why: saved::Refused| Problem::new(format!("`{name}` {why}"));
+    let saved = Saved::decode(&bytes).map_err(|why| {
+        cannot(why).help(
+            "a share is an EXR that `rtc build --shard I/N` wrote: make it again, or have `--partial` leave it out",
+        )
+    })?;
+    let refuse = |why| {
+        cannot(why).help(
+            "give each share once, all of one picture, or have `--partial` leave out what does not go with most",
+        )
     };
-    let saved = Saved::decode(&bytes).map_err(refuse)?;
     match merging {
         Some(merging) => merging.add(&name, &saved).map(|()| None).map_err(refuse),
         None => Merging::new(&name, saved).map(Some).map_err(refuse),

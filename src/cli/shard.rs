@@ -1,7 +1,9 @@
 //! Which share of a picture's samples is to be made: as flags say it, or the scheduler.
 
 use super::Problem;
-use super::args::Shard;
+use super::args::{Build, Shard};
+use super::target::Target;
+use rt_lang::output::Format;
 use rt_lang::saved::Share;
 
 /// The share of so many samples that a flag means. `variable` gives the value of an environment variable.
@@ -24,6 +26,31 @@ pub fn share(
         _ => Err(Problem::new(format!("{samples} samples a pixel cannot be divided into {of} shares"))
             .help("ask for more samples, or for fewer shares")),
     }
+}
+
+/// A share has so many samples and nothing else, and is an EXR.
+pub fn refuse_what_shares_cannot(arguments: &Build, targets: &[Target]) -> Result<(), Problem> {
+    if arguments.keeping.shard.is_none() {
+        return Ok(());
+    }
+    let fixed = "every share must know its samples before: give `--samples N`";
+    let idle = match arguments {
+        Build { halting, .. } if halting.time.is_some() => Some(("--time", fixed)),
+        Build { taking, .. } if taking.noise.is_some() => Some(("--noise", fixed)),
+        Build { aov, .. } if !aov.is_empty() => {
+            Some(("--aov", "make these channels apart, with a few samples"))
+        }
+        Build { feedback: true, .. } => Some(("--feedback", "it is of the whole picture: ask for it apart")),
+        _ => None,
+    };
+    if let Some((flag, help)) = idle {
+        return Err(Problem::new(format!("`--shard` and `{flag}` do not go together")).help(help));
+    }
+    if targets.iter().all(|target| target.format == Format::Exr) {
+        return Ok(());
+    }
+    let problem = Problem::new("a share of a picture is an EXR, which holds its exact sums");
+    Err(problem.help("say where it goes: `-o part1.exr`"))
 }
 
 /// The share that is the task of a Slurm job array. Part of an array has not as many tasks as there are shares, so it must be

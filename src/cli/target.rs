@@ -119,11 +119,11 @@ impl Aside {
         let name = place.file_name().unwrap_or_default().to_string_lossy();
         let made = match always {
             Some(suffix) => claim::always(folder, &format!("{name}{suffix}"), permissions.clone(), interrupt),
-            None => claim::any(folder, permissions.clone(), interrupt),
+            None => claim::any(folder, &name, permissions.clone(), interrupt),
         };
         let file = made.map_err(|error| {
             let problem = cannot_write(&shown(path), &error);
-            let beside = folder.join(format!(".{name}{}.tmp", always.unwrap_or_default()));
+            let beside = claim::path(folder, &format!("{name}{}", always.unwrap_or_default()));
             match error.kind() == ErrorKind::PermissionDenied && always.is_some() && beside.exists() {
                 true => problem.help(format!("`{}` was left by another user: remove it", beside.display())),
                 false => problem,
@@ -254,7 +254,7 @@ fn cannot_write(name: &str, error: &io::Error) -> Problem {
         }
         ErrorKind::InvalidInput => {
             Problem::new(format!("cannot write {name}: what is beside it for that is not a file"))
-                .help("remove what has its name with a dot before it and `.tmp` behind")
+                .help("remove what has its name with `.rtc-` before it and `.tmp` behind")
         }
         _ => Problem::new(format!("cannot write {name}: {}", plain(error))),
     }

@@ -4,7 +4,7 @@ use super::Problem;
 use super::args::Build;
 use super::build::{Context, Versions, chosen_stops};
 use super::denoise::{self, Denoised};
-use super::keep::{self, Keeper, Places};
+use super::keep::{self, Account, Keeper, Places};
 use super::progress::Progress;
 use super::shard;
 use super::target::Target;
@@ -14,11 +14,9 @@ use rt_lang::render::feedback::Feedback;
 use rt_lang::render::halt::{Limit, Limits};
 use rt_lang::render::making::Making;
 use rt_lang::render::{Cancelled, Control, Prepass, Shown, Structure, Tracer, Window};
-use rt_lang::saved::{self, Head, Share, Subject};
-use rt_lang::scene::{self, Scene, identity::Identity};
+use rt_lang::saved::{self, Share, Subject};
+use rt_lang::scene::{self, Scene, identity::Identity, identity::difference};
 use rt_lang::why::Provenance;
-use std::fs::{self, File};
-use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -57,6 +55,8 @@ pub struct Traced {
     pub fitting: f64,
     /// About the share of the light that the limit of bounces loses.
     pub cut: f64,
+    /// Which samples were there before, and where they are kept.
+    pub account: Account,
     /// Its exact sums, and of which share, if it is to be put together with others.
     pub sums: Option<(Subject, Making)>,
     /// What many paths tell, if that was asked for.
@@ -148,16 +148,10 @@ fn share(arguments: &Build, scene: &Scene) -> Result<Option<Share>, Problem> {
     shard::share(shard, samples, &|name| std::env::var(name).ok()).map(Some)
 }
 
-/// The bytes of a file that are looked at for what it is a share of: the head of one is far smaller.
-const HEAD: u64 = 1 << 18;
-
 /// A share does not replace one of another number of shares: that may be the work of others, where a scheduler counts the tasks
 /// of a part of them.
 fn refuse_other_division(share: Share, path: &Path) -> Result<(), Problem> {
-    let mut head = vec![];
-    let is_read = fs::metadata(path).is_ok_and(|data| data.is_file())
-        && File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head)).is_ok();
-    let there = is_read.then(|| Head::decode(&head).ok()?.subject.share).flatten();
+    let there = keep::head(path).and_then(|head| head.subject.share);
     let Some(there) = there.filter(|there| there.of != share.of) else { return Ok(()) };
     let (path, Share { index, of, .. }) = (path.display(), there);
     let problem = Problem::new(format!(
@@ -222,10 +216,11 @@ pub fn trace(
     }
     let limit = match &mut keeper {
         Some(keeper) => tracing.go_on_keeping(&mut making, keeper, context),
-        None => tracing.go_on(&mut making, &mut |_| {}),
+        None => tracing.go_on(&mut making, &mut |_| context.refuse_request()),
     };
     let ended = limit.and_then(|limit| tracing.finish(&making, limit, aovs));
     let Ok(traced) = ended else { context.interrupt.wait() };
+    let traced = Traced { account: keeper.map(Keeper::account).unwrap_or_default(), ..traced };
     if share.is_some() {
         return Ok(Traced { sums: Some((tracing.subject, making)), ..traced });
     }
@@ -306,17 +301,12 @@ impl<'a> Tracing<'a> {
             ));
         }
         let judged = kept.judged().filter(|judged| self.limits.noise.is_some() && *judged != self.shown)?;
-        Some(match judged.stops == self.shown.stops {
-            false => format!(
-                "where its samples are was chosen for another exposure ({}, not {})",
-                judged.stops, self.shown.stops
-            ),
-            true => format!(
-                "where its samples are was chosen for another tonemap ({}, not {})",
-                judged.tonemap.word(),
-                self.shown.tonemap.word()
-            ),
-        })
+        let (own, other) = match judged.stops == self.shown.stops {
+            false => (format!("`--exposure {}`", self.shown.stops), judged.stops.to_string()),
+            true => (format!("`--tonemap {}`", self.shown.tonemap.word()), judged.tonemap.word().to_string()),
+        };
+        let difference = difference(&own, keep::CALLED, &other);
+        Some(format!("a noise target chose where its samples go by how it is shown: {difference}"))
     }
 
     fn go_on(&self, making: &mut Making, between: &mut dyn FnMut(&Making)) -> Result<Limit, Cancelled> {
@@ -332,12 +322,9 @@ impl<'a> Tracing<'a> {
     ) -> Result<Limit, Cancelled> {
         let Context { interrupt, terminal, .. } = *context;
         interrupt.keep();
-        let before = making.mean_samples();
         let limit = self.go_on(making, &mut |making| keeper.consider(making));
-        if making.mean_samples() > before {
-            keeper.keep(making);
-        }
-        interrupt.kept(terminal);
+        keeper.finish(making);
+        interrupt.kept(terminal, keeper.kept());
         limit
     }
 
@@ -378,6 +365,7 @@ impl<'a> Tracing<'a> {
             stops: self.shown.stops,
             fitting: chosen_stops(&self.prepass),
             cut: self.prepass.cut,
+            account: Account::default(),
             sums: None,
             feedback: None,
         })

@@ -232,7 +232,6 @@ const MOST_EXPANSION: u64 = 1032;
 /// Reads the channels of whole numbers, by name. All channels are in memory for a moment, so [`decode_head`] should have been
 /// asked which there are. A file that is too small for what it claims to hold is refused before.
 pub fn decode_words(file: &[u8]) -> Result<Vec<Words>, CannotDecode> {
-    let refuse = |error: exr::error::Error| CannotDecode(error.to_string());
     for header in &refuse_large(file)?.headers {
         let bytes = (header.layer_size.0 as u64 * header.layer_size.1 as u64)
             .saturating_mul(header.channels.bytes_per_pixel as u64);
@@ -244,7 +243,7 @@ pub fn decode_words(file: &[u8]) -> Result<Vec<Words>, CannotDecode> {
         }
     }
     let reader = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
-    let image = reader.all_attributes().from_buffered(Cursor::new(file)).map_err(refuse)?;
+    let image = reader.all_attributes().from_buffered(Cursor::new(file)).map_err(plain)?;
     let words = image.layer_data.channel_data.list.into_iter().filter_map(|channel| {
         let AnyChannel { name, sample_data: FlatSamples::U32(values), .. } = channel else { return None };
         Some(Words { name: name.to_string(), values })
@@ -252,10 +251,42 @@ pub fn decode_words(file: &[u8]) -> Result<Vec<Words>, CannotDecode> {
     Ok(words.collect())
 }
 
+/// What an EXR begins with.
+const MAGIC: &[u8] = &[0x76, 0x2f, 0x31, 0x01];
+
+/// Whether a file begins as an EXR does.
+pub fn is_exr(file: &[u8]) -> bool {
+    file.starts_with(MAGIC)
+}
+
+/// What a file is that is no EXR, by how it begins.
+fn kind(file: &[u8]) -> &'static str {
+    match file {
+        [] => "empty",
+        [0x89, b'P', b'N', b'G', ..] => "a PNG",
+        [0xff, 0xd8, 0xff, ..] => "a JPEG",
+        [b'R', b'I', b'F', b'F', ..] => "a WebP",
+        [b'#', b'?', ..] => "a Radiance HDR",
+        [b'P', b'F', b'\n', ..] => "a PFM",
+        _ if std::str::from_utf8(file).is_ok_and(|text| !text.contains('\0')) => "a text",
+        _ => "no EXR",
+    }
+}
+
+/// What is wrong with an EXR of our own form, in words of our own.
+fn plain(error: exr::error::Error) -> CannotDecode {
+    CannotDecode(match error {
+        exr::error::Error::NotSupported(what) => format!("it is of a form that is not read here: {what}"),
+        _ => "it is damaged or cut short".into(),
+    })
+}
+
 /// Refuses what has too many pixels before any memory is taken for them.
 fn refuse_large(file: &[u8]) -> Result<MetaData, CannotDecode> {
-    let meta = MetaData::read_from_buffered(Cursor::new(file), false);
-    let meta = meta.map_err(|error| CannotDecode(error.to_string()))?;
+    if !is_exr(file) {
+        return Err(CannotDecode(format!("it is {}", kind(file))));
+    }
+    let meta = MetaData::read_from_buffered(Cursor::new(file), false).map_err(plain)?;
     for header in &meta.headers {
         let pixels = header.layer_size.0 as u64 * header.layer_size.1 as u64;
         if pixels > MOST_PIXELS {

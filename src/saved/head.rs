@@ -2,7 +2,7 @@
 
 use super::{
     CHANNELS, CHECKSUM, FORM, JUDGED, PREFIX, PROGRAM, Refused, SCALE, SHARE, START, Share, Subject, VERSION,
-    judged_from, refused,
+    judged_from, refused, unreadable,
 };
 use crate::output::{self, Facts, Frame, decode_head};
 use crate::render::film::MOST_SAMPLES;
@@ -29,10 +29,12 @@ pub struct Head {
 impl Head {
     /// Reads the head of a file, for which its first bytes do.
     pub fn decode(file: &[u8]) -> Result<Head, Refused> {
-        let head = decode_head(file).map_err(|reason| Refused(format!("is no EXR: {reason}")))?;
+        let head = decode_head(file).map_err(|reason| unreadable(file, reason))?;
         let text = |name: &str| head.texts.iter().find(|(n, _)| n == name).map(|(_, value)| value.as_str());
         match text(FORM) {
-            None => return refused("holds no exact sums: it is no checkpoint and no share of a picture"),
+            None => {
+                return refused("is a picture alone: it holds no exact sums, as checkpoints and shares do");
+            }
             Some(version) if version != VERSION => {
                 let version: String = version.escape_debug().take(8).collect();
                 let other = format!(

@@ -1,9 +1,9 @@
 //! Shares of a picture's samples, put together.
 
-use super::{Refused, Saved, Share, Subject, refused};
+use super::{Head, Refused, Saved, Share, Subject, refused};
 use crate::output::Facts;
 use crate::render::Film;
-use crate::scene::Tonemap;
+use crate::scene::{Tonemap, identity::difference};
 
 /// A picture of which some shares are there.
 pub struct Merging {
@@ -29,18 +29,15 @@ impl Merging {
     /// Adds a share from a file of this name.
     pub fn add(&mut self, name: &str, next: &Saved) -> Result<(), Refused> {
         let share = finished(next)?;
-        let own = self.share();
-        // Its own number is what a share may differ in.
-        let expected = Subject { share: Some(Share { index: share.index, ..own }), ..self.subject.clone() };
-        let first = self.names.iter().flatten().next().map_or("", String::as_str);
-        if let Some(why) = expected.refuses(&next.subject) {
-            return refused(format!("does not go with `{first}`: {why}"));
-        }
-        if let Some(difference) = unlike(&self.facts, &next.facts) {
-            return refused(format!("does not go with `{first}`: it differs in {difference}"));
-        }
-        if next.making.film().scale() != self.film.scale() {
-            return refused(format!("does not go with `{first}`: it has another scale"));
+        let own = (&self.subject, &self.facts, self.film.scale());
+        if let Some(why) = unlike(own, (&next.subject, &next.facts, next.making.film().scale())) {
+            let mut known = self.names.iter().flatten();
+            let first = known.next().map_or("", String::as_str);
+            let more = match known.count() {
+                0 => String::new(),
+                more => format!(" and {more} more"),
+            };
+            return refused(format!("does not go with `{first}`{more}: {why}"));
         }
         match &mut self.names[share.index as usize - 1] {
             Some(known) => refused(format!("is share {} of {}, and so is `{known}`", share.index, share.of)),
@@ -79,18 +76,69 @@ impl Merging {
     }
 }
 
-/// In what a share came about otherwise than the first, such that the picture would depend on which of them is the first.
-fn unlike(first: &Facts, other: &Facts) -> Option<String> {
+/// In which order shares are to be put together, by what the heads of their files say, so that those are first of which most are
+/// there: then it is the odd ones that do not go with the others.
+///
+/// # Errors
+///
+/// With the first of each, where there are as many of one picture as of another.
+pub fn most_first(heads: &[Option<Head>]) -> Result<Vec<usize>, [usize; 2]> {
+    let mut groups: Vec<Vec<usize>> = vec![];
+    for (at, head) in heads.iter().enumerate() {
+        let Some(head) = head.as_ref().filter(|head| head.subject.share.is_some()) else { continue };
+        let kin = |group: &&mut Vec<usize>| {
+            let first = heads[group[0]].as_ref();
+            first.is_some_and(|first| unlike(first.parts(), head.parts()).is_none())
+        };
+        match groups.iter_mut().find(kin) {
+            Some(group) => group.push(at),
+            None => groups.push(vec![at]),
+        }
+    }
+    // Of as many the first ones stay first.
+    groups.sort_by_key(|group| std::cmp::Reverse(group.len()));
+    match groups.as_slice() {
+        [one, other, ..] if one.len() == other.len() => Err([one[0], other[0]]),
+        _ => {
+            let first = groups.into_iter().next().unwrap_or_default();
+            let rest: Vec<usize> = (0..heads.len()).filter(|at| !first.contains(at)).collect();
+            Ok([first, rest].concat())
+        }
+    }
+}
+
+impl Head {
+    fn parts(&self) -> Parts<'_> {
+        (&self.subject, &self.facts, self.scale)
+    }
+}
+
+/// What tells whether a share goes with another: what it is of, how it came about, and the scale of its sums.
+type Parts<'s> = (&'s Subject, &'s Facts, f64);
+
+/// Why another share does not go with one, such that the picture would be another or depend on which of them is the first.
+fn unlike((own, facts, scale): Parts, (other, others, other_scale): Parts) -> Option<String> {
+    const CALLED: &str = "this share";
+    // Its own number is what a share may differ in.
+    let index = other.share.map_or(1, |share| share.index);
+    let expected = Subject { share: own.share.map(|share| Share { index, ..share }), ..own.clone() };
+    if let Some(why) = expected.refuses(other, CALLED) {
+        return Some(why);
+    }
     let stops = |facts: &Facts| facts.stops.map_or("none".to_string(), |stops| stops.to_string());
     let curve = |facts: &Facts| facts.tonemap.map_or("none", Tonemap::word);
-    if first.stops != other.stops {
-        return Some(format!("its exposure ({}, not {})", stops(other), stops(first)));
+    let shown = |flag: &str, own: &str, other: &str| {
+        let difference = difference(&format!("`--{flag} {own}`"), CALLED, other);
+        Some(format!("it is shown otherwise: {difference}"))
+    };
+    if facts.stops != others.stops {
+        return shown("exposure", &stops(facts), &stops(others));
     }
-    if first.tonemap != other.tonemap {
-        return Some(format!("its tonemap ({}, not {})", curve(other), curve(first)));
+    if facts.tonemap != others.tonemap {
+        return shown("tonemap", curve(facts), curve(others));
     }
     let rest = |facts: &Facts| (facts.scene.clone(), facts.seed, facts.software.clone());
-    (rest(first) != rest(other)).then(|| "what it says of its scene".to_string())
+    (rest(facts) != rest(others) || scale != other_scale).then(|| "it is of another scene".to_string())
 }
 
 /// Which share it is, if it is one and has all its samples.

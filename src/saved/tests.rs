@@ -138,7 +138,10 @@ fn pixels_elsewhere_than_they_say_are_refused() {
     for by in [5, -2, -5, 16, 17, i32::MAX / 2] {
         let why =
             Saved::decode(&shifted(&bytes, b"dataWindow", by)).expect_err("they are elsewhere").to_string();
-        assert!(["elsewhere", "outside", "no EXR"].iter().any(|said| why.contains(said)), "{by}: {why}");
+        assert!(
+            ["elsewhere", "outside", "cannot be read", "no checkpoint"].iter().any(|said| why.contains(said)),
+            "{by}: {why}"
+        );
     }
 }
 
@@ -243,7 +246,7 @@ fn what_does_not_go_together_is_named() {
     let five = Share { index: 2, of: 5, samples: 18 };
     assert!(
         add(saved(Some(five), five.range(), 4))
-            .contains("its share (2/5 of 18 samples, not 2/4 of 18 samples)")
+            .contains("other samples: `--shard 2/4 --samples 18` (this share: `--shard 2/5 --samples 18`)")
     );
     let developed = |change: &dyn Fn(&mut Facts)| {
         let mut other = saved(Some(share(2)), 4..9, 5);
@@ -251,10 +254,10 @@ fn what_does_not_go_together_is_named() {
         other
     };
     let why = add(developed(&|facts| facts.stops = Some(4.0)));
-    assert_eq!(why, "does not go with `first`: it differs in its exposure (4, not 0.5)");
+    assert_eq!(why, "does not go with `first`: it is shown otherwise: `--exposure 0.5` (this share: 4)");
     let why = add(developed(&|facts| facts.tonemap = Some(Tonemap::Agx)));
-    assert_eq!(why, "does not go with `first`: it differs in its tonemap (agx, not none)");
-    assert!(add(developed(&|facts| facts.scene = Some("other".into()))).contains("says of its scene"));
+    assert_eq!(why, "does not go with `first`: it is shown otherwise: `--tonemap none` (this share: agx)");
+    assert!(add(developed(&|facts| facts.scene = Some("other".into()))).contains("of another scene"));
     let mut other = saved(Some(share(2)), 4..9, 5);
     other.subject.program = "rtc 99".into();
     assert!(add(other).contains("made by `rtc 99`, and this is rtc 0"));
@@ -273,7 +276,36 @@ fn what_does_not_go_together_is_named() {
     let mut other = saved(Some(share(2)), 4..9, 5);
     other.subject.identity = foreign;
     let why = add(other);
-    let expected =
-        "it is of another picture, which differs in its camera and its seed (9, not seed of the scene)";
+    let expected = "it is of another picture: another camera, `--seed seed of the scene` (this share: 9)";
     assert!(why.contains(expected), "{why}");
+}
+
+#[test]
+fn those_of_which_most_are_there_come_first() {
+    let head = |seed: &str, share: Option<Share>| {
+        let value = |name: &str| {
+            let own = identity();
+            let value = own.entries().find(|(known, _)| *known == name).map(|(_, value)| value.to_string());
+            if name == "seed" { Some(seed.to_string()) } else { value }
+        };
+        let mut saved = saved(share, 0..4, 5);
+        saved.subject.identity = Identity::from_values(value).expect("every name has a value");
+        Head::decode(&bytes_of(&saved)).ok()
+    };
+    let heads = |seeds: &str| -> Vec<Option<Head>> {
+        let head = |(at, seed): (usize, char)| match seed {
+            '-' => None,
+            'c' => head("1", None),
+            _ => head(&seed.to_string(), Some(share(at as u32 % 4 + 1))),
+        };
+        seeds.chars().enumerate().map(head).collect()
+    };
+    assert_eq!(most_first(&heads("7111")), Ok(vec![1, 2, 3, 0]));
+    assert_eq!(most_first(&heads("-c71-1")), Ok(vec![3, 5, 0, 1, 2, 4]));
+    assert_eq!(most_first(&heads("71")), Err([0, 1]));
+    assert_eq!(most_first(&heads("2711-7")), Err([1, 2]));
+    assert_eq!(
+        (most_first(&heads("1")), most_first(&heads("-")), most_first(&[])),
+        (Ok(vec![0]), Ok(vec![0]), Ok(vec![]))
+    );
 }

@@ -73,18 +73,31 @@ impl Identity {
         self.value("background") == Background::Transparent.word()
     }
 
-    /// In what another is different, in words: `its camera` or `its seed (7, not 0)`.
-    pub fn differences(&self, other: &Identity) -> Vec<String> {
+    /// In what another is different, as one writes it: `another camera` or `--seed 7 (kept: 0)`, where the other is the kept one.
+    pub fn differences(&self, other: &Identity, called: &str) -> Vec<String> {
+        // Who changes the size of a whole picture has not cropped it.
+        let cropped = !(self.is_whole() && other.is_whole());
         let pairs = self.entries.iter().zip(&other.entries);
-        let different = pairs.filter(|((_, own), (_, other))| own != other);
+        let different =
+            pairs.filter(|((name, own), (_, other))| own != other && (*name != "crop" || cropped));
         different
-            .map(|((name, own), (_, other))| match HASHES.contains(name) {
-                true => format!("its {name}"),
-                // What comes from a file may be anything.
-                false => {
-                    format!("its {name} ({}, not {own})", other.escape_debug().take(40).collect::<String>())
-                }
+            .map(|((name, own), (_, other))| match *name {
+                _ if name == &"camera" => "another camera".to_string(),
+                _ if HASHES.contains(name) => format!("other {name}"),
+                "size" | "crop" | "seed" => difference(&format!("`--{name} {own}`"), called, other),
+                _ => difference(&format!("`{name}: {own}`"), called, other),
             })
             .collect()
     }
+
+    /// Whether nothing is cropped.
+    fn is_whole(&self) -> bool {
+        let [width, height] = self.size();
+        self.crop() == Some([0, 0, width, height])
+    }
+}
+
+/// What is asked for, with what another has in its place: `--seed 7 (kept: 0)`. What comes from a file may be anything.
+pub fn difference(own: &str, called: &str, other: &str) -> String {
+    format!("{own} ({called}: {})", other.escape_debug().take(40).collect::<String>())
 }

@@ -186,6 +186,8 @@ fn what_cannot_be_is_refused_before_any_work() {
     refused("-o webp:- --resume", &["no name to keep its frames beside"]);
     refused("-o film.webp ball.rt", &["a film is of one scene"]);
     refused("-o film.webp --fps 0", &["frames a second"]);
+    refused("-o {}.png --fps 25", &["`--fps` is for a film in one file", "-o film.webp"]);
+    refused("-o {}.png --resume kept", &["`--resume=kept`"]);
     refused("-o no/film.webp", &["there is no folder `no`"]);
     build(&desk, "-o out.{04}.png").expect(2, &["`out.{04}.png` is the name of frames", "--frames 48"]);
     build(&desk, "-o out.mp4").expect(2, &["`mp4` is no format of pictures", "--frames 48"]);
@@ -202,7 +204,7 @@ fn what_cannot_be_is_refused_before_any_work() {
     wrong("s = 0 to 1", &["E0503", "no param `s`"]);
     desk.put("rise.rt", RISING.replace("= 0\n", "= 0 in 0 to 1\n"));
     // Found before the frames on the way to it are made.
-    wrong("t = 0 to 2", &["E0401", "frame 5 of 5 cannot be made"]);
+    wrong("t = 0 to 2", &["E0401", "frame 5 of 5, with `t = 2`, cannot be made"]);
 }
 
 #[test]
@@ -230,21 +232,30 @@ fn done_frames_are_skipped_and_those_that_changed_made_anew() {
     let before = [desk.get("f1.png"), desk.get("f2.png")];
     film(pictures).expect(0, &["frame 1 of 3 is done", "frame 3 of 3 is done"]);
     film(&format!("{pictures} --seed 5 --only 2"))
-        .expect(0, &["frame 2 of 3: 3 samples", "made anew: it differs in its seed (0, not 5)"]);
+        .expect(0, &["frame 2 of 3: 3 samples", "made anew: `--seed 5` (made: 0)"]);
     assert_ne!(desk.get("f2.png"), before[1]);
-    film(pictures).expect(0, &["frame 1 of 3 is done", "its seed (5, not 0)"]);
+    film(pictures).expect(0, &["frame 1 of 3 is done", "`--seed 0` (made: 5)"]);
     assert_eq!(desk.get("f2.png"), before[1]);
+
+    // A record that is damaged is no other frame, and a film needs more than the record of its pictures tells.
+    let mut record = desk.get("f2.png.made");
+    record[3] ^= 1;
+    desk.put("f2.png.made", record);
+    film(pictures).expect(0, &["made anew: its record `f2.png.made` is damaged", "frame 3 of 3 is done"]);
+    film("-o p{}.png --resume --only 1").expect(0, &["1 of 3 frames in"]);
+    film("-o p{}.png -o p.webp --resume --only 1")
+        .expect(0, &["made anew: it was made without `p.webp.frames/000001.exr`"]);
 
     // By what is in the file, not by its being there.
     desk.put("f1.png", "torn");
     fs::remove_file(desk.path("f3.exr")).unwrap();
     let again = film(pictures);
-    again.expect(0, &["made anew: `f1.png` is not the file that was made", "`f3.exr` is not the file"]);
+    again.expect(0, &["made anew: `f1.png` was changed", "made anew: `f3.exr` is missing"]);
     assert!(again.stderr.contains("frame 2 of 3 is done"));
     assert_eq!(desk.get("f1.png"), before[0]);
 
     desk.put("rise.rt", RISING.replace("20cm", "30cm * t + 5cm"));
-    film(pictures).expect(0, &["made anew: it differs in its surfaces"]);
+    film(pictures).expect(0, &["made anew: other surfaces"]);
     let never = film("-o f{}.png -o f{}.exr --resume=never --only 1");
     never.expect(0, &["frame 1 of 3: 3 samples"]);
 }
@@ -258,13 +269,14 @@ fn a_frame_of_other_settings_is_not_taken_for_done() {
     film("").expect(0, &["frame 2 of 2: 3 samples"]);
     film("").expect(0, &["frame 2 of 2 is done"]);
     for (flags, differs) in [
-        ("--exposure 2", "its exposure ("),
-        ("--tonemap agx", "its tonemap (neutral, not agx)"),
-        ("--crop 1,1,9,9", "its crop (0,0,24,18, not 1,1,9,9)"),
-        ("--set count=2", "its surfaces"),
-        ("--aov depth", "its channels (, not depth)"),
-        ("--denoise", "its denoising (no, not yes)"),
-        ("--seed 4", "its seed (0, not 4)"),
+        ("--exposure 2", "`--exposure 2` (made: "),
+        ("--tonemap agx", "`--tonemap agx` (made: neutral)"),
+        ("--crop 1,1,9,9", "`--crop 1,1,9,9` (made: 0,0,24,18)"),
+        ("--set count=2", "other surfaces"),
+        ("--aov depth", "`--aov depth` (made: none)"),
+        ("--denoise", "`--denoise` (made: none)"),
+        ("--seed 4", "`--seed 4` (made: 0)"),
+        ("--noise 10%", "anew: `--noise 10%` (made: none)\n"),
     ] {
         film(flags).expect(0, &[differs]);
         film(flags).expect(0, &["frame 2 of 2 is done"]);
@@ -273,7 +285,7 @@ fn a_frame_of_other_settings_is_not_taken_for_done() {
     // Of another film with as many frames.
     build(&desk, r#"--sweep "t = 0 to 0.5" --frames 2 --only 2 -o f{}.exr --resume"#)
         .expect(0, &["made anew"]);
-    film("").expect(0, &["made anew: it differs in its surfaces"]);
+    film("").expect(0, &["made anew: other surfaces"]);
     desk.put("rise.rt", RISING.replace("90W", "91W"));
     film("").expect(0, &["made anew"]);
 }
@@ -310,11 +322,11 @@ fn frames_with_names_in_them_are_made_anew_when_these_change() {
     };
     let film = |rest: &str| build(&desk, &format!(r#"--sweep "t = 0 to 1" --frames 1 --resume {rest}"#));
     named("rouge");
-    film("-o n{}.exr --aov object,material").expect(0, &["3 samples"]);
+    film("-o n{}.exr --aov object,material").expect(0, &["3 samples", "\n1 frame in"]);
     film("-o plain{}.exr").expect(0, &["3 samples"]);
     film("-o n{}.exr --aov object,material").expect(0, &["is done"]);
     named("ruddy");
-    film("-o n{}.exr --aov object,material").expect(0, &["made anew: it differs in its names"]);
+    film("-o n{}.exr --aov object,material").expect(0, &["made anew: other names"]);
     film("-o plain{}.exr").expect(0, &["is done"]);
 }
 

@@ -2,6 +2,7 @@
 
 use super::{Desk, assert_same};
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -58,7 +59,7 @@ fn shares_put_together_are_the_picture_of_one_machine() {
     let says = |file: &str| desk.get(file).windows(10).any(|bytes| bytes == b"rtc.shares");
     assert_eq!((says("some.exr"), says("all.exr")), (true, false));
     for (flag, said) in
-        [("--exposure 4", "its exposure (4, not "), ("--tonemap none", "its tonemap (none, not ")]
+        [("--exposure 4", "(this share: 4)"), ("--tonemap none", "`--tonemap neutral` (this share: none)")]
     {
         build(&desk, &format!("--samples 10 --shard 2/3 {flag} -o foreign.exr")).expect(0, &[]);
         for order in ["part1.exr foreign.exr part3.exr", "part3.exr part1.exr foreign.exr"] {
@@ -71,12 +72,21 @@ fn shares_put_together_are_the_picture_of_one_machine() {
         .expect(2, &["`again.exr` is share 2 of 3, and so is `part2.exr`"]);
     build(&desk, "--samples 10 --shard 2/3 --seed 9 -o foreign.exr").expect(0, &[]);
     desk.run("merge part1.exr foreign.exr part3.exr -o no.exr")
-        .expect(2, &["`foreign.exr` does not go with `part1.exr`", "its seed (9, not 0)"]);
+        .expect(2, &["`foreign.exr` does not go with `part1.exr` and 1 more", "`--seed 0` (this share: 9)"]);
+    // The odd one is that which most do not go with, wherever it stands; of two that is nobody.
+    desk.run("merge --partial foreign.exr part1.exr part3.exr -o look.png")
+        .expect(0, &["`foreign.exr` does not go with", "it is left out", "7 samples", "of 2 shares"]);
+    desk.run("merge --partial foreign.exr part1.exr -o no.exr")
+        .expect(2, &["`foreign.exr` and `part1.exr` are shares of different pictures"]);
     desk.run("merge one.exr -o no.exr")
-        .expect(2, &["`one.exr` holds no exact sums", "have `--partial` leave out"]);
-    desk.run("merge room.rt -o no.exr").expect(2, &["`room.rt` is no EXR"]);
+        .expect(2, &["`one.exr` is a picture alone", "have `--partial` leave it out"]);
+    desk.run("merge room.rt -o no.exr").expect(
+        2,
+        &["`room.rt` is no checkpoint and no share of a picture: it is a text", "`rtc build --shard I/N`"],
+    );
     fs::write(desk.path("torn.exr"), &desk.get("part2.exr")[..9000]).unwrap();
-    desk.run("merge part1.exr torn.exr part3.exr -o no.exr").expect(2, &["`torn.exr` is no EXR"]);
+    desk.run("merge part1.exr torn.exr part3.exr -o no.exr")
+        .expect(2, &["`torn.exr` cannot be read: it is damaged or cut short"]);
     // Of many files it is said which one is not as it should be, wherever it stands.
     let mut spoilt = desk.get("part2.exr");
     let middle = spoilt.len() / 2;
@@ -192,14 +202,14 @@ fn a_noise_target_goes_on_only_as_it_was_to_be_shown() {
         build(&desk, &format!("--noise 2% --samples 512 --min-samples 4 -o a.exr --checkpoint {rest}"))
     };
     noise("--exposure 2").expect(0, &[]);
-    noise("--exposure 1").expect(2, &["another exposure (2, not 1)", "--resume=never"]);
-    noise("--exposure 2 --tonemap none").expect(2, &["another tonemap (", "not none)"]);
+    noise("--exposure 1").expect(2, &["`--exposure 1` (kept: 2)", "--resume=never"]);
+    noise("--exposure 2 --tonemap none").expect(2, &["`--tonemap none` (kept: neutral)"]);
     noise("--exposure 2").expect(0, &[]);
     // A number of samples does not ask how they are shown.
     build(&desk, "--samples 600 --exposure 1 -o a.exr --checkpoint").expect(0, &[]);
     build(&desk, "--samples 600 --exposure 1 -o b.exr").expect(0, &[]);
     assert_same(&desk.path("a.exr"), &desk.path("b.exr"));
-    noise("--exposure 1").expect(2, &["another exposure (2, not 1)"]);
+    noise("--exposure 1").expect(2, &["`--exposure 1` (kept: 2)"]);
 }
 
 #[test]
@@ -224,22 +234,36 @@ fn what_was_kept_goes_on_to_the_same_bytes() {
         |rest: &str, said: &[&str]| build(&desk, &format!("-o a.exr --resume {rest}")).expect(2, said);
     refused(
         "--seed 3",
-        &["cannot go on from `a.exr.checkpoint`", "in its seed (0, not 3)", "--resume=never"],
+        &["cannot go on from `a.exr.checkpoint`", "another picture: `--seed 3` (kept: 0)", "--resume=never"],
     );
-    refused("--crop 0,0,9,9", &["its crop (0,0,48,36, not 0,0,9,9)"]);
-    refused("--samples 40 --shard 1/2", &["its share (all, not 1/2 of 40 samples)"]);
+    refused("--crop 0,0,9,9", &["`--crop 0,0,9,9` (kept: 0,0,48,36)"]);
+    refused("--samples 40 --shard 1/2", &["`--shard 1/2 --samples 40` (kept: no `--shard`)"]);
     refused("--resume=missing", &["--resume"]);
+    let resized = desk.run("build room.rt --size 24x18 -q -o a.exr --resume");
+    resized.expect(2, &["another picture: `--size 24x18` (kept: 48x36)\n"]);
     build(&desk, "-o a.exr --resume=missing").expect(2, &["cannot read `missing`"]);
     desk.put("room.rt", ROOM.replace("power: 90W", "power: 91W"));
-    refused("", &["of another picture, which differs in its materials"]);
+    refused("", &["of another picture: other materials"]);
     desk.put("room.rt", ROOM.replace("roughness: 20%", "roughness: 21%"));
-    refused("", &["in its materials"]);
+    refused("", &["other materials"]);
     desk.put("room.rt", ROOM);
     let mut torn = desk.get("a.exr.checkpoint");
     let middle = torn.len() / 2;
     torn[middle] ^= 1;
     desk.put("a.exr.checkpoint", torn);
-    refused("", &["cannot go on from `a.exr.checkpoint`"]);
+    refused("", &["cannot go on from `a.exr.checkpoint`: it ", " damaged", "begins afresh and replaces it"]);
+    desk.put("empty", "");
+    desk.put("picture", [0x89, b'P', b'N', b'G']);
+    for (file, what) in [("empty", "it is empty"), ("picture", "it is a PNG"), ("room.rt", "it is a text")] {
+        build(&desk, &format!("-o a.exr --checkpoint=kept --resume={file}"))
+            .expect(2, &[what, "name a file that `--checkpoint` wrote"]);
+    }
+    for flag in ["--checkpoint", "--resume"] {
+        let said = format!("`kept` is taken for a scene, and is probably the file of `{flag}`");
+        let helped = format!("`{flag}=kept`");
+        build(&desk, &format!("{flag} kept -o a.exr")).expect(2, &[&said, &helped]);
+        build(&desk, &format!("{flag} kept")).expect(2, &[&said, &helped]);
+    }
     build(&desk, "-o a.exr --checkpoint=a.exr").expect(2, &["both the picture and its checkpoint"]);
     build(&desk, "-o - --checkpoint").expect(2, &["--checkpoint=FILE"]);
     build(&desk, "-o a.exr --checkpoint=room.rt --resume=never").expect(2, &["would be replaced"]);
@@ -248,11 +272,49 @@ fn what_was_kept_goes_on_to_the_same_bytes() {
 }
 
 #[test]
+fn what_is_kept_and_gone_on_from_is_told() {
+    let desk = desk();
+    let build = |rest: &str| desk.run(&format!("build room.rt --size 16x12 -o a.png {rest}"));
+    let told = |ended: super::Ended| ended.stderr.lines().last().unwrap().to_string();
+    assert_eq!(told(build("--samples 4 --checkpoint")), "kept 4 samples in `a.png.checkpoint`");
+    let went_on = "went on from 4 samples in `a.png.checkpoint`";
+    assert_eq!(told(build("--samples 9 --resume")), format!("{went_on}, kept 9 samples there"));
+    let nothing_left = "went on from 9 samples in `a.png.checkpoint`, where nothing was left to trace";
+    assert_eq!(told(build("--samples 9 --resume")), nothing_left);
+    // Also where nothing is left to trace the file is there that was asked for.
+    let elsewhere = build("--samples 9 --resume=a.png.checkpoint --checkpoint=kept");
+    assert_eq!(told(elsewhere), "went on from 9 samples in `a.png.checkpoint`, kept 9 samples in `kept`");
+    assert_same(&desk.path("a.png.checkpoint"), &desk.path("kept"));
+    assert!(build("--samples 9 --resume --quiet").stderr.is_empty());
+    assert!(!build("--samples 9").stderr.contains("kept"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_build_that_keeps_nothing_goes_on_after_a_request_to_keep() {
+    let desk = desk();
+    let mut child = desk.command("build ball.rt --size 200x150 --samples 1000000 -o a.png");
+    let mut child = child.stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(1500));
+    let kill = Command::new("sh").args(["-c", &format!("kill -USR1 {}", child.id())]).status();
+    assert!(kill.unwrap().success());
+    // It says so between two steps of its work.
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
+    assert!(lines.any(|line| line.contains("SIGUSR1") && line.contains("`--checkpoint`")), "it ended");
+    child.kill().unwrap();
+    child.wait().unwrap();
+    // What it left goes with the next one.
+    assert!(desk.names().contains(&".rtc-a.png.tmp".to_string()), "{:?}", desk.names());
+    build(&desk, "--samples 1 -o a.png").expect(0, &[]);
+    assert_eq!(desk.names(), ["a.png", "ball.rt", "room.rt"]);
+}
+
+#[test]
 fn a_checkpoint_is_of_one_process_at_a_time() {
     let desk = desk();
     let mut first = desk.command("build room.rt --size 200x150 --samples 1000000 -o a.png --checkpoint=kept");
     let mut first = first.stderr(Stdio::null()).spawn().unwrap();
-    while !desk.names().contains(&".kept.lock.tmp".to_string()) {
+    while !desk.names().contains(&".rtc-kept.lock.tmp".to_string()) {
         assert!(first.try_wait().unwrap().is_none(), "it ended by itself");
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -267,7 +329,7 @@ fn a_checkpoint_is_of_one_process_at_a_time() {
 #[test]
 fn a_pipe_beside_a_picture_is_not_waited_for() {
     let desk = desk();
-    for name in [".a.exr.tmp", ".a.exr.checkpoint.tmp", ".a.exr.checkpoint.lock.tmp"] {
+    for name in [".rtc-a.exr.tmp", ".rtc-a.exr.checkpoint.tmp", ".rtc-a.exr.checkpoint.lock.tmp"] {
         assert!(Command::new("mkfifo").arg(desk.path(name)).status().unwrap().success());
         build(&desk, "--samples 1 -o a.exr --checkpoint").expect(2, &["is not a file", "remove"]);
         fs::remove_file(desk.path(name)).unwrap();
@@ -319,7 +381,8 @@ fn signals_write_a_checkpoint() {
         let before = desk.get("kept");
         std::thread::sleep(Duration::from_millis(800));
         send(signal);
-        super::ended(child.wait_with_output().unwrap()).expect(130, &["interrupted"]);
+        super::ended(child.wait_with_output().unwrap())
+            .expect(130, &["interrupted; kept ", " samples", " in `kept`"]);
         assert_ne!(desk.get("kept"), before, "SIG{signal} wrote no checkpoint");
         // There are more already.
         desk.run("build room.rt --size 200x150 --samples 1 -o a.png --resume=kept")

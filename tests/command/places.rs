@@ -140,20 +140,20 @@ mod on_unix {
         for name in ["a.png", "a.png.checkpoint"] {
             fs::set_permissions(desk.path(name), fs::Permissions::from_mode(0o444)).unwrap();
         }
-        let long = begin(&desk, "a.png", ".a.png.tmp");
+        let long = begin(&desk, "a.png", ".rtc-a.png.tmp");
         kill(long);
-        assert_eq!(mode(&desk, ".a.png.tmp") & 0o200, 0o200, "its owner may take it away");
+        assert_eq!(mode(&desk, ".rtc-a.png.tmp") & 0o200, 0o200, "its owner may take it away");
         // Left by somebody whose files may be read alone.
-        for name in [".a.png.tmp", ".a.png.checkpoint.tmp"] {
+        for name in [".rtc-a.png.tmp", ".rtc-a.png.checkpoint.tmp"] {
             desk.put(name, "left");
             fs::set_permissions(desk.path(name), fs::Permissions::from_mode(0o444)).unwrap();
         }
         as_anybody(&desk, &format!("{arguments} --resume=never")).expect(0, &[]);
         assert_eq!((mode(&desk, "a.png"), mode(&desk, "a.png.checkpoint")), (0o444, 0o444));
-        desk.put(".a.png.tmp", "left");
-        fs::set_permissions(desk.path(".a.png.tmp"), fs::Permissions::from_mode(0o0)).unwrap();
+        desk.put(".rtc-a.png.tmp", "left");
+        fs::set_permissions(desk.path(".rtc-a.png.tmp"), fs::Permissions::from_mode(0o0)).unwrap();
         as_anybody(&desk, arguments)
-            .expect(2, &["permission denied", ".a.png.tmp` was left by another user"]);
+            .expect(2, &["permission denied", ".rtc-a.png.tmp` was left by another user"]);
     }
 
     #[test]
@@ -171,7 +171,7 @@ mod on_unix {
         for name in ["l1.png", "l2.png"] {
             symlink("large/real.png", desk.path(name)).unwrap();
         }
-        let first = begin(&desk, "l1.png", ".l1.png.checkpoint.lock.tmp");
+        let first = begin(&desk, "l1.png", ".rtc-l1.png.checkpoint.lock.tmp");
         build(&desk, "-o l2.png --checkpoint").expect(2, &["cannot write `l2.png`: another process"]);
         kill(first);
         build(&desk, "-o l2.png --checkpoint").expect(0, &[]);
@@ -191,7 +191,7 @@ mod on_unix {
     fn a_share_that_another_process_makes_is_waited_for() {
         let desk = Desk::new();
         build(&desk, "-o b.png --wait 1s").expect(2, &["`--wait` is for work that is kept"]);
-        let first = begin(&desk, "a.png", ".a.png.tmp");
+        let first = begin(&desk, "a.png", ".rtc-a.png.tmp");
         build(&desk, "-o a.png --resume").expect(2, &["cannot write `a.png`: another process", "--wait"]);
         build(&desk, "-o a.png --resume --wait 600ms").expect(2, &["it is waited for", "another process"]);
         let second = desk
@@ -207,7 +207,7 @@ mod on_unix {
     #[test]
     fn a_frame_that_another_process_makes_does_not_hold_up_the_others() {
         let desk = Desk::new();
-        let other = begin(&desk, "f1.png", ".f1.png.tmp");
+        let other = begin(&desk, "f1.png", ".rtc-f1.png.tmp");
         let rest = film(&desk, "-o f{}.png");
         rest.expect(
             2,

@@ -176,14 +176,17 @@ impl Studio<'_, '_> {
     /// Compiles a frame, and says of it what was not said of another. None where it has errors.
     fn compile(&mut self, number: u32) -> Result<Option<Compiled>, Problem> {
         let Orders { of, .. } = *self.orders;
-        let mut compiled = self.series.at(Moment { index: number - 1, of });
+        let moment = Moment { index: number - 1, of };
+        let mut compiled = self.series.at(moment);
         let diagnostics = std::mem::take(&mut compiled.diagnostics);
         let ended = self.say(&diagnostics)?;
         if let (Exit::Done, Some(scene)) = (ended, &mut compiled.scene) {
             scene.develop.exposure = scene.develop.exposure.or(self.exposure);
             return Ok(Some(compiled));
         }
-        self.context.terminal.line(&format!("frame {number} of {of} cannot be made"));
+        let swept = self.series.swept(moment, &compiled.inventory).join("`, `");
+        let swept = if swept.is_empty() { swept } else { format!(", with `{swept}`,") };
+        self.context.terminal.line(&format!("frame {number} of {of}{swept} cannot be made"));
         Ok(None)
     }
 
@@ -268,7 +271,8 @@ impl Studio<'_, '_> {
         self.say(&findings)?;
         if !arguments.quiet {
             let (samples, time) = (build::samples(&traced), duration(start.elapsed()));
-            terminal.line(&format!("{}: {samples} in {time}{anew}", self.orders.name(number)));
+            let went_on = traced.account.went_on().map_or(String::new(), |said| format!(", {said}"));
+            terminal.line(&format!("{}: {samples} in {time}{went_on}{anew}", self.orders.name(number)));
         }
         let shown = traced.denoised.map_or(traced.picture, |denoised| denoised.picture);
         Ok(Shot::Made(shown, traced.facts))
@@ -292,8 +296,9 @@ impl Studio<'_, '_> {
             )
         });
         let (made, of) = (self.orders.numbers.len(), self.orders.of);
+        let unit = if of == 1 { "frame" } else { "frames" };
         let which =
-            if made == of as usize { format!("{of} frames") } else { format!("{made} of {of} frames") };
+            if made == of as usize { format!("{of} {unit}") } else { format!("{made} of {of} {unit}") };
         terminal.line(&format!("{which} in {}{exposure}", duration(start.elapsed())));
     }
 }

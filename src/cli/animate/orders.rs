@@ -3,6 +3,7 @@
 use super::super::args::{Build, Keeping, Resume};
 use super::super::build;
 use super::super::input::is_standard;
+use super::super::keep;
 use super::super::messages::on_standard_output;
 use super::super::target::Target;
 use super::super::{Problem, plain};
@@ -35,6 +36,7 @@ pub struct Orders {
 impl Orders {
     /// Reads the flags of a build that has frames.
     pub fn new(arguments: &Build) -> Result<Orders, Problem> {
+        keep::refuse_loose_files(arguments)?;
         let [scene] = arguments.scenes.as_slice() else {
             let problem =
                 Problem::new(format!("a film is of one scene, and here are {}", arguments.scenes.len()));
@@ -142,6 +144,10 @@ impl Orders {
         let png = |(_, form): &(PathBuf, Form)| *form == Form::Own(Motion::Apng);
         let depth = if self.films.iter().any(png) { Depth::Eight } else { arguments.taking.look.bits };
         build::refuse_idle_depth(depth, &first)?;
+        if self.films.is_empty() && arguments.animating.fps.is_some() {
+            let problem = Problem::new("`--fps` is for a film in one file, and these are pictures");
+            return Err(problem.help("add a film, such as `-o film.webp`, or leave the flag out"));
+        }
         let standard = self.films.iter().any(|(path, _)| is_standard(&place(path)));
         if on_standard_output(&arguments.messages) && standard {
             let problem = Problem::new("the film and the messages would both go to standard output");
