@@ -7,12 +7,12 @@ use super::terminal::Terminal;
 use super::{Problem, build, input};
 use rt_lang::output::{Facts, MOST_PIXELS};
 use rt_lang::render::making::Making;
-use rt_lang::saved::{self, CHANNELS, Saved, Subject};
+use rt_lang::saved::{self, CHANNELS, EARLY_CHANNELS, Saved, Subject};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// The largest file of samples that is read: the most pixels, uncompressed, and a little more.
-pub const LARGEST: u64 = MOST_PIXELS * 4 * (CHANNELS.len() as u64 + 5);
+pub const LARGEST: u64 = MOST_PIXELS * 4 * ((CHANNELS.len() + EARLY_CHANNELS.len()) as u64 + 5);
 
 /// How many times as long as keeping them took samples are traced before they are kept again, so that a large picture is not kept
 /// for more of the time than it is made.

@@ -267,8 +267,8 @@ impl Studio<'_, '_> {
         let findings = self.findings(&compiled, scene, &traced);
         self.say(&findings)?;
         if !arguments.quiet {
-            let (samples, time) = (build::samples(&traced), duration(start.elapsed()));
-            terminal.line(&format!("{}: {samples} in {time}{anew}", self.orders.name(number)));
+            let taken = build::taken(&traced, start.elapsed());
+            terminal.line(&format!("{}: {taken}{anew}", self.orders.name(number)));
         }
         let shown = traced.denoised.map_or(traced.picture, |denoised| denoised.picture);
         Ok(Shot::Made(shown, traced.facts))
