@@ -86,8 +86,8 @@ pub fn whole_work([width, height]: [u32; 2]) -> u64 {
     2 * work(pixels, SQUARINGS.len()) + work(pixels, 1)
 }
 
-/// The picture without noise, in the unit of the noisy one; how far it is is told to `done`, by any thread. No channel is below 0. What is no number counts as 0, and what is
-/// more than a hundred million times the mean as that.
+/// The picture without noise, in the unit of the noisy one; how far it is is told to `done`, by any thread. No channel is
+/// below 0. What is no number counts as 0, and what is more than a hundred million times the mean as that.
 ///
 /// # Panics
 ///
