@@ -9,7 +9,7 @@ mod head;
 mod merge;
 
 use crate::output::{CannotDecode, Channels, Facts, Picture, Words, decode_words, encode_exr, is_exr};
-use crate::render::film::{MOST_SAMPLES, Pixel, WORDS};
+use crate::render::film::{GATHERED_WORDS, Gathered, MOST_SAMPLES, Pixel, WORDS};
 use crate::render::making::Making;
 use crate::render::{Film, Shown, Window};
 use crate::scene::{Tonemap, identity::Identity};
@@ -56,6 +56,31 @@ pub const CHANNELS: [&str; WORDS + 1] = [
     "sums.open.1",
     "sums.samples",
     "sums.aim",
+];
+
+/// The channels that a picture in the making has besides where its first samples are kept apart ([`Making::early`]): the words of
+/// their light (see [`Gathered::words`]).
+pub const EARLY_CHANNELS: [&str; 2 * GATHERED_WORDS] = [
+    "early.less.red.0",
+    "early.less.red.1",
+    "early.less.green.0",
+    "early.less.green.1",
+    "early.less.blue.0",
+    "early.less.blue.1",
+    "early.less.covered.0",
+    "early.less.covered.1",
+    "early.less.open.0",
+    "early.less.open.1",
+    "early.more.red.0",
+    "early.more.red.1",
+    "early.more.green.0",
+    "early.more.green.1",
+    "early.more.blue.0",
+    "early.more.blue.1",
+    "early.more.covered.0",
+    "early.more.covered.1",
+    "early.more.open.0",
+    "early.more.open.1",
 ];
 
 /// The form of these files. Another number is another form.
@@ -201,12 +226,12 @@ impl Saved {
     pub fn decode(file: &[u8]) -> Result<Saved, Refused> {
         let head = Head::decode(file)?;
         let mut words = decode_words(file).map_err(|reason| unreadable(file, reason))?;
-        words.sort_by_key(|words| CHANNELS.iter().position(|name| *name == words.name));
+        words.sort_by_key(|words| channels().position(|name| name == words.name));
         let Head { subject, facts, window, start, scale, judged, texts, checksum: said } = head;
+        let known = channels().take(words.len());
+        let is_known = words.iter().map(|words| words.name.as_str()).eq(known);
         let channels = Channels { words, texts, ..Channels::default() };
-        if !channels.words.iter().map(|words| words.name.as_str()).eq(CHANNELS)
-            || said != Some(checksum(&channels, &facts))
-        {
+        if !is_known || said != Some(checksum(&channels, &facts)) {
             return refused("is damaged: what it holds is not what was written");
         }
         let making = making(window, start, scale, judged, &channels.words)
@@ -221,6 +246,11 @@ fn unreadable(file: &[u8], reason: CannotDecode) -> Refused {
         true => format!("cannot be read: {reason}"),
         false => format!("is no checkpoint and no share of a picture: {reason}"),
     })
+}
+
+/// All channels there may be, in their order.
+fn channels() -> impl Iterator<Item = &'static str> {
+    CHANNELS.into_iter().chain(EARLY_CHANNELS)
 }
 
 /// Exposure and curve, as `0.5 neutral`.
@@ -259,11 +289,14 @@ fn words(making: &Making) -> Vec<Words> {
         }
     }
     values.push(making.aims());
-    let named = CHANNELS.iter().zip(values);
+    let early = making.early().into_iter().flatten();
+    let word = |lights: &[Gathered], word: usize| lights.iter().map(|light| light.words()[word]).collect();
+    values.extend(early.flat_map(|lights| (0..GATHERED_WORDS).map(move |index| word(lights, index))));
+    let named = channels().zip(values);
     named.map(|(name, values)| Words { name: name.to_string(), values }).collect()
 }
 
-/// The samples that channels hold, which are those of [`CHANNELS`] in their order.
+/// The samples that channels hold, which are those of [`CHANNELS`] in their order, and maybe those of [`EARLY_CHANNELS`].
 fn making(
     window: Window,
     start: u32,
@@ -271,15 +304,27 @@ fn making(
     judged: Option<Shown>,
     channels: &[Words],
 ) -> Option<Making> {
-    let (aims, sums) = channels.split_last()?;
-    let pixel = |index: usize| {
-        let words: Vec<u32> = sums.iter().map(|sum| sum.values.get(index).copied()).collect::<Option<_>>()?;
-        Pixel::from_words(words.try_into().ok()?)
-    };
+    let ([sums @ .., aims], early) = channels.split_at_checked(CHANNELS.len())? else { return None };
+    let pixel = |index: usize| Pixel::from_words(words_at(sums, index)?);
     let pixels = (0..window.pixels()).map(pixel).collect::<Option<Vec<Pixel>>>()?;
     let within = |aim: &u32| aim.checked_add(start).is_some_and(|end| end <= MOST_SAMPLES);
     let film = Film::with_pixels(window, scale, pixels).filter(|_| aims.values.iter().all(within))?;
-    Making::resumed(film, start, &aims.values, judged)
+    let making = Making::resumed(film, start, &aims.values, judged)?;
+    if early.is_empty() {
+        return Some(making);
+    }
+    let early: Vec<&[Words]> = early.chunks(GATHERED_WORDS).collect();
+    making.with_early(|which, index| words_at(early.get(which)?, index))
+}
+
+/// The words of a pixel, of as many channels.
+fn words_at<const N: usize>(channels: &[Words], index: usize) -> Option<[u32; N]> {
+    let mut words = [0; N];
+    let (channels, rest) = channels.split_first_chunk::<N>()?;
+    for (word, channel) in words.iter_mut().zip(channels) {
+        *word = *channel.values.get(index)?;
+    }
+    rest.is_empty().then_some(words)
 }
 
 /// Of texts and whole numbers, each with its name, and of how the picture came about.

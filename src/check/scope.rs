@@ -117,10 +117,6 @@ impl<'t> Item<'t> {
     fn drawn(&self) -> bool {
         matches!(self, Item::Statement(ast::Statement { kind: Tree::Thing { .. }, .. }))
     }
-
-    fn param(&self) -> bool {
-        matches!(self, Item::Statement(ast::Statement { kind: Tree::Param { .. }, .. }))
-    }
 }
 
 impl Checker<'_> {

@@ -2,7 +2,7 @@
 
 use super::animate::{self, has_number};
 use super::args::{Build, Keeping};
-use super::denoise;
+use super::denoise::{self, Clear, Denoised};
 use super::input::is_standard;
 use super::interrupt::Interrupt;
 use super::messages::{Messenger, on_standard_output};
@@ -299,12 +299,14 @@ fn summary(job: &Job, scene: &Scene, traced: &Traced, time: Duration) -> String 
     };
     let names = names(&job.targets);
     let Picture { size: [width, height], .. } = traced.picture;
-    let samples = samples(traced);
-    let denoised = match &traced.denoised {
-        Some(denoised) => format!(", denoised in {} of that", duration(denoised.time)),
-        None => String::new(),
-    };
-    format!("{names}: {width}×{height}, {samples} in {}{denoised}, {exposure}", duration(time))
+    format!("{names}: {width}×{height}, {}, {exposure}", taken(traced, time))
+}
+
+/// What was taken of a picture that is done, and how long that took.
+pub fn taken(traced: &Traced, time: Duration) -> String {
+    let of_that = |denoised: &Denoised| format!(", denoised in {} of that", duration(denoised.time));
+    let denoised = traced.denoised.as_ref().map_or(String::new(), of_that);
+    format!("{} in {}{denoised}", samples(traced), duration(time))
 }
 
 /// The least and the most samples of a pixel, and their mean, in words.
@@ -317,7 +319,7 @@ pub fn count([least, most]: [u32; 2], mean: f64) -> String {
 }
 
 /// How many samples were taken, what noise they leave, and why no more.
-pub fn samples(traced: &Traced) -> String {
+fn samples(traced: &Traced) -> String {
     let Traced { samples: [least, most], mean_samples, .. } = *traced;
     let count = count([least, most], mean_samples);
     let share = traced.sums.as_ref().and_then(|(subject, _)| subject.share);
@@ -409,7 +411,7 @@ pub struct Versions<'p> {
     /// As it was traced: that of an EXR.
     pub traced: &'p Picture,
     /// Without noise: that of all other formats, and a layer of an EXR.
-    pub denoised: Option<&'p Picture>,
+    pub denoised: Option<Clear<'p>>,
 }
 
 impl<'p> From<&'p Picture> for Versions<'p> {
@@ -431,12 +433,10 @@ pub fn write<'p>(
         let bytes = match file.target.format {
             Format::Exr => {
                 let mut channels = channels.clone();
-                if let Some(denoised) = denoised {
-                    denoise::layer(denoised, &mut channels);
-                }
+                denoised.into_iter().for_each(|clear| denoise::layer(clear, &mut channels));
                 encode_exr(traced, facts, channels)
             }
-            format => encode(denoised.unwrap_or(traced), facts, format, depth),
+            format => encode(denoised.map_or(traced, |clear| clear.picture), facts, format, depth),
         };
         let bytes = bytes.map_err(|reason| {
             Problem::new(format!("cannot write {}: {reason}", names(std::slice::from_ref(&file.target))))

@@ -3,11 +3,12 @@
 use super::Problem;
 use super::args::Build;
 use rayon::prelude::*;
-use rt_lang::denoise::{Clean, Noisy, denoise};
-use rt_lang::output::{Channels, DENOISED, DENOISED_ALPHA, Picture, Plane};
+use rt_lang::denoise::{Clean, Noisy, denoise, whole_work};
+use rt_lang::output::{Channels, DENOISED, DENOISED_ALPHA, DENOISED_BY, Picture, Plane};
+use rt_lang::render::film::Gathered;
 use rt_lang::render::first::Guides;
 use rt_lang::render::making::Making;
-use rt_lang::render::{Film, Window};
+use rt_lang::render::{Control, Film, Window};
 use std::time::{Duration, Instant};
 
 /// Samples a pixel below which there are no two halves.
@@ -28,21 +29,25 @@ pub struct Denoised {
     pub time: Duration,
 }
 
-/// Names what does not keep both halves of the samples.
+/// A share has neither all samples nor what the filter is guided by, and `rtc merge` has no scene.
 pub fn refuse(arguments: &Build) -> Result<(), Problem> {
-    if !arguments.denoise {
+    if !arguments.denoise || arguments.keeping.shard.is_none() {
         return Ok(());
     }
-    let keeps = arguments.keeping.keeps();
-    let (flag, help) = match arguments.keeping.shard {
-        Some(_) => (
-            "--shard",
-            "it compares two halves of the samples, which are not kept in shares; `rtc merge` makes the noisy picture of them",
-        ),
-        None if keeps => ("--checkpoint", "it compares two halves of the samples, which are not kept there"),
-        None => return Ok(()),
-    };
-    Err(Problem::new(format!("`--denoise` and `{flag}` do not go together")).help(help))
+    let problem =
+        Problem::new("`--denoise` and `--shard` do not go together: the noise is that of all samples");
+    Err(problem.help(
+        "make the shares without it, and `rtc merge` gives the picture as traced; without noise it is made by one machine, \
+         as are the frames of a film",
+    ))
+}
+
+/// Why samples that were kept are none to go on with, if they are not.
+pub fn refuses(kept: &Making) -> Option<String> {
+    let begun = kept.samples()[1] > 0 && !kept.is_in_halves();
+    begun.then(|| {
+        "it was begun without `--denoise`, so that two halves of its samples, which that compares, are not told apart".into()
+    })
 }
 
 /// A number of samples that has no halves.
@@ -54,23 +59,31 @@ pub fn refuse_samples(arguments: &Build, most: u32) -> Result<(), Problem> {
     Err(problem.help("it compares two halves of them; from 4 on it does well"))
 }
 
-/// Takes the noise out of a picture that is traced in halves; the time counts from the start that is given.
-pub fn denoised(picture: &Picture, making: &Making, guides: Guides, start: Instant) -> Option<Denoised> {
-    let film = making.film();
-    let films = making.halves()?;
-    let share = over(film, |x, y| films[0].samples(x, y) as f32 / film.samples(x, y) as f32);
-    let alpha = picture
-        .alpha
-        .as_ref()
-        .map(|_| films.each_ref().map(|half| over(half, |x, y| half.alpha(x, y) as f32)));
-    let halves = films.each_ref().map(means);
-    drop(films);
+/// Takes the noise out of a picture that is traced in halves; the time counts from the start that is given. `control` tells how
+/// far it is.
+pub fn denoised(
+    picture: &Picture,
+    making: &Making,
+    guides: Guides,
+    start: Instant,
+    control: &Control,
+) -> Option<Denoised> {
+    let (film, halves) = (making.film(), making.halves()?);
+    let share = halves[0].iter().zip(film.pixels());
+    let share = share.map(|(half, all)| half.samples() as f32 / all.samples() as f32).collect();
+    let alphas = |lights: &Vec<Gathered>| lights.iter().map(|light| light.alpha() as f32).collect();
+    let alpha = picture.alpha.as_ref().map(|_| halves.each_ref().map(alphas));
+    let means = |lights: Vec<Gathered>| -> Vec<[f32; 3]> {
+        lights.iter().map(|light| light.mean(film.scale()).to_array().map(|v| v as f32)).collect()
+    };
+    let halves = halves.map(means);
     let variance = over(film, |x, y| {
         let error = film.error(x, y);
         (error * error) as f32
     });
     let noisy = Noisy { size: picture.size, halves, alpha, share, variance, guides };
-    let Clean { mut pixels, mut alpha } = denoise(&noisy);
+    control.plan(whole_work(picture.size));
+    let Clean { mut pixels, mut alpha } = denoise(&noisy, &|work| control.finish(work));
     // Where nothing is covered, there is nothing to denoise.
     if let (Some(alpha), Some(covered)) = (&mut alpha, &picture.alpha) {
         let traced = picture.pixels.iter().zip(covered);
@@ -83,8 +96,18 @@ pub fn denoised(picture: &Picture, making: &Making, guides: Guides, start: Insta
     Some(Denoised { picture: Picture { pixels, alpha, ..picture.clone() }, time: start.elapsed() })
 }
 
+/// A picture without noise as it is written.
+#[derive(Clone, Copy)]
+pub struct Clear<'p> {
+    /// The picture.
+    pub picture: &'p Picture,
+    /// What took the noise out, if that is known.
+    pub by: Option<&'p str>,
+}
+
 /// The picture as a layer of an EXR.
-pub fn layer(picture: &Picture, channels: &mut Channels) {
+pub fn layer(clear: Clear, channels: &mut Channels) {
+    let Clear { picture, by } = clear;
     for (channel, name) in DENOISED.into_iter().enumerate() {
         let values = picture.pixels.iter().map(|pixel| pixel[channel]).collect();
         channels.planes.push(Plane { name: name.into(), values });
@@ -92,10 +115,7 @@ pub fn layer(picture: &Picture, channels: &mut Channels) {
     if let Some(values) = picture.alpha.clone() {
         channels.planes.push(Plane { name: DENOISED_ALPHA.into(), values });
     }
-}
-
-fn means(film: &Film) -> Vec<[f32; 3]> {
-    over(film, |x, y| film.mean(x, y).to_array().map(|v| v as f32))
+    channels.texts.extend(by.map(|by| (DENOISED_BY.into(), by.into())));
 }
 
 /// A value of each pixel, row by row.

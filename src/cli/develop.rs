@@ -2,6 +2,7 @@
 
 use super::args::Develop;
 use super::build::Versions;
+use super::denoise::Clear;
 use super::interrupt::Interrupt;
 use super::target::Staged;
 use super::terminal::Terminal;
@@ -28,7 +29,8 @@ pub fn run(arguments: &Develop, terminal: Terminal, interrupt: &Interrupt) -> Re
     facts.stops = arguments.exposure.or(facts.stops);
     facts.tonemap = arguments.look.tonemap.or(facts.tonemap);
     let staged: Result<Vec<Staged>, Problem> = targets.iter().map(|target| target.stage(interrupt)).collect();
-    let versions = Versions { traced: &picture, denoised: denoised.as_ref() };
+    let clear = denoised.as_ref().map(|(picture, by)| Clear { picture, by: by.as_deref() });
+    let versions = Versions { traced: &picture, denoised: clear };
     build::write(versions, &facts, &Channels::default(), arguments.look.bits, staged?)?;
     if !arguments.quiet {
         let [width, height] = picture.size;

@@ -7,13 +7,13 @@ use super::terminal::Terminal;
 use super::{Problem, build, input};
 use rt_lang::output::{Facts, MOST_PIXELS};
 use rt_lang::render::making::Making;
-use rt_lang::saved::{self, CHANNELS, Head, Saved, Subject};
+use rt_lang::saved::{self, CHANNELS, EARLY_CHANNELS, Head, Saved, Subject};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// The largest file of samples that is read: the most pixels, uncompressed, and a little more.
-pub const LARGEST: u64 = MOST_PIXELS * 4 * (CHANNELS.len() as u64 + 5);
+pub const LARGEST: u64 = MOST_PIXELS * 4 * ((CHANNELS.len() + EARLY_CHANNELS.len()) as u64 + 5);
 
 /// The bytes of a file that are looked at for what it is of: the head of one is far smaller.
 const HEAD: u64 = 1 << 18;

@@ -11,6 +11,15 @@ use std::time::{Duration, Instant};
 /// How often the bar is drawn.
 const PERIOD: Duration = Duration::from_millis(100);
 
+/// What takes so long.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Work {
+    /// Tracing, counted in samples.
+    Tracing,
+    /// Taking out noise.
+    Denoising,
+}
+
 /// A bar that is drawn until this is dropped, which also wipes it.
 pub struct Progress {
     finished: Arc<AtomicBool>,
@@ -18,12 +27,12 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Watches a render.
-    pub fn watch(control: Arc<Control>, name: String) -> Progress {
+    /// Watches work on a picture of this name.
+    pub fn watch(control: Arc<Control>, work: Work, name: String) -> Progress {
         let finished = Arc::new(AtomicBool::new(false));
         let seen = finished.clone();
         // Without a thread to draw it there is no bar, and nothing else is lost.
-        let thread = std::thread::Builder::new().spawn(move || draw(&control, name, &seen)).ok();
+        let thread = std::thread::Builder::new().spawn(move || draw(&control, work, name, &seen)).ok();
         Progress { finished, thread }
     }
 }
@@ -39,7 +48,7 @@ impl Drop for Progress {
     }
 }
 
-fn draw(control: &Control, name: String, finished: &AtomicBool) {
+fn draw(control: &Control, work: Work, name: String, finished: &AtomicBool) {
     let start = Instant::now();
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
     let style = ProgressStyle::with_template("{prefix} {bar:24} {percent:>3} %  {msg}");
@@ -51,20 +60,24 @@ fn draw(control: &Control, name: String, finished: &AtomicBool) {
         // Of no work yet known, none is done.
         bar.set_length(progress.total.max(1));
         bar.set_position(progress.done);
-        bar.set_message(message(progress.done, progress.total, elapsed));
+        bar.set_message(message(work, progress.done, progress.total, elapsed));
         std::thread::park_timeout(PERIOD);
     }
     bar.finish_and_clear();
 }
 
-/// `12.3 M samples/s  4 s left`.
-fn message(done: u64, total: u64, elapsed: Duration) -> String {
+/// `12.3 M samples/s  4 s left`, or `denoising  4 s left`.
+fn message(work: Work, done: u64, total: u64, elapsed: Duration) -> String {
     if done == 0 || elapsed.is_zero() {
-        return String::new();
+        return if work == Work::Denoising { "denoising".into() } else { String::new() };
     }
     let rate = done as f64 / elapsed.as_secs_f64();
     let left = total.saturating_sub(done) as f64 / rate;
-    format!("{:.2} M samples/s  {} left", rate / 1e6, duration(Duration::from_secs_f64(left.min(1e9))))
+    let left = duration(Duration::from_secs_f64(left.min(1e9)));
+    match work {
+        Work::Tracing => format!("{:.2} M samples/s  {left} left", rate / 1e6),
+        Work::Denoising => format!("denoising  {left} left"),
+    }
 }
 
 /// A time as one says it: `850 ms`, `2.3 s`, `1 min 12 s`, `3 h 05 min`.
@@ -96,7 +109,9 @@ mod tests {
 
     #[test]
     fn no_work_yet_says_nothing() {
-        assert_eq!(message(0, 0, Duration::ZERO), "");
-        assert_eq!(message(1_000_000, 3_000_000, Duration::from_secs(1)), "1.00 M samples/s  2.0 s left");
+        let said = |work, done| message(work, done, 3_000_000, Duration::from_secs(1));
+        assert_eq!((said(Work::Tracing, 0), said(Work::Denoising, 0)), (String::new(), "denoising".into()));
+        assert_eq!(said(Work::Tracing, 1_000_000), "1.00 M samples/s  2.0 s left");
+        assert_eq!(said(Work::Denoising, 1_000_000), "denoising  2.0 s left");
     }
 }

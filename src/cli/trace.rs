@@ -3,12 +3,13 @@
 use super::Problem;
 use super::args::Build;
 use super::build::{Context, Versions, chosen_stops};
-use super::denoise::{self, Denoised};
+use super::denoise::{self, Clear, Denoised};
 use super::keep::{self, Account, Keeper, Places};
-use super::progress::Progress;
+use super::progress::{Progress, Work};
 use super::shard;
 use super::target::Target;
 use rt_lang::aov::{self, Aov};
+use rt_lang::denoise::METHOD;
 use rt_lang::output::{Channels, Facts, Picture};
 use rt_lang::render::feedback::Feedback;
 use rt_lang::render::halt::{Limit, Limits};
@@ -104,10 +105,9 @@ impl<'a> Plan<'a> {
         Ok(Plan { from, window, limits, share, places, denoises: arguments.denoise })
     }
 
-    /// The same for a frame of a film: see [`Places::yielding`]. One to be denoised is kept when it is done, and not before,
-    /// since the halves of its samples cannot be.
+    /// The same for a frame of a film: see [`Places::yielding`].
     pub fn of_frame(self) -> Plan<'a> {
-        Plan { places: self.places.filter(|_| !self.denoises).map(Places::yielding), ..self }
+        Plan { places: self.places.map(Places::yielding), ..self }
     }
 
     /// The scene and where it came from.
@@ -134,7 +134,9 @@ impl<'a> Plan<'a> {
 impl Traced {
     /// The picture to write.
     pub fn versions(&self) -> Versions<'_> {
-        Versions { traced: &self.picture, denoised: self.denoised.as_ref().map(|denoised| &denoised.picture) }
+        let denoised = self.denoised.as_ref();
+        let clear = denoised.map(|denoised| Clear { picture: &denoised.picture, by: Some(METHOD) });
+        Versions { traced: &self.picture, denoised: clear }
     }
 }
 
@@ -194,7 +196,10 @@ pub fn trace(
     let control = Arc::new(Control::new());
     context.interrupt.watch(control.clone());
     let shown = context.terminal.interactive && !context.arguments.quiet;
-    let _progress = shown.then(|| Progress::watch(control.clone(), name.display().to_string()));
+    let watch = |work, control: &Arc<Control>| {
+        shown.then(|| Progress::watch(control.clone(), work, name.display().to_string()))
+    };
+    let progress = watch(Work::Tracing, &control);
     let Plan { from, window, limits, share, places, denoises } = plan;
     let structure = before.as_mut().and_then(|before| before.structure.take());
     let Ok(tracing) = Tracing::new(from, window, limits, share, control, structure) else {
@@ -206,7 +211,10 @@ pub fn trace(
         Keeper::new(places, every, (&tracing.subject, &tracing.facts), context.interrupt, context.terminal)
     });
     let kept = match &mut keeper {
-        Some(keeper) => keeper.resume(|kept| tracing.refuses(kept))?,
+        Some(keeper) => keeper.resume(|kept| {
+            let lacks_halves = || denoises.then(|| denoise::refuses(kept)).flatten();
+            tracing.refuses(kept).or_else(lacks_halves)
+        })?,
         None => None,
     };
     let reused = before.as_mut().and_then(|before| before.samples(&tracing, window));
@@ -218,7 +226,16 @@ pub fn trace(
         Some(keeper) => tracing.go_on_keeping(&mut making, keeper, context),
         None => tracing.go_on(&mut making, &mut |_| context.refuse_request()),
     };
-    let ended = limit.and_then(|limit| tracing.finish(&making, limit, aovs));
+    // Where it is to be denoised, another bar tells of that.
+    let filter = denoises.then(|| Arc::new(Control::new()));
+    let _progress = match &filter {
+        Some(filter) => {
+            drop(progress);
+            watch(Work::Denoising, filter)
+        }
+        None => progress,
+    };
+    let ended = limit.and_then(|limit| tracing.finish(&making, limit, aovs, filter.as_deref()));
     let Ok(traced) = ended else { context.interrupt.wait() };
     let traced = Traced { account: keeper.map(Keeper::account).unwrap_or_default(), ..traced };
     if share.is_some() {
@@ -237,7 +254,7 @@ pub fn take(from: Provenance, window: Window, control: Arc<Control>) -> Result<T
     let tracing = Tracing::new(from, window, limits, None, control, None)?;
     let mut making = Making::new(window, tracing.prepass.scale);
     let limit = tracing.go_on(&mut making, &mut |_| {})?;
-    tracing.finish(&making, limit, &[])
+    tracing.finish(&making, limit, &[], None)
 }
 
 /// A picture being traced.
@@ -328,25 +345,40 @@ impl<'a> Tracing<'a> {
         limit
     }
 
-    /// The picture without noise, if it was traced in halves and every pixel has a sample of each.
-    fn denoised(&self, picture: &Picture, making: &Making) -> Result<Option<Denoised>, Cancelled> {
+    /// The picture without noise, if every pixel has a sample of each half. `filter` tells how far it is.
+    fn denoised(
+        &self,
+        picture: &Picture,
+        making: &Making,
+        filter: &Control,
+    ) -> Result<Option<Denoised>, Cancelled> {
         let [least, most] = making.samples();
-        if !making.is_in_halves() || least < denoise::LEAST_SAMPLES {
+        if least < denoise::LEAST_SAMPLES {
             return Ok(None);
         }
         let start = Instant::now();
         let guides =
             self.tracer.guides(making.film().window(), denoise::guide_samples(most), &self.control)?;
-        Ok(denoise::denoised(picture, making, guides, start))
+        Ok(denoise::denoised(picture, making, guides, start, filter))
     }
 
-    fn finish(&self, making: &Making, limit: Limit, aovs: &[Aov]) -> Result<Traced, Cancelled> {
+    /// What there is to say of a picture that is done; without noise too, if it is known who is told how far that is.
+    fn finish(
+        &self,
+        making: &Making,
+        limit: Limit,
+        aovs: &[Aov],
+        filter: Option<&Control>,
+    ) -> Result<Traced, Cancelled> {
         let (samples, mean_samples) = (making.samples(), making.mean_samples());
         let facts = Facts { limit: Some(limit.word().into()), ..self.facts.clone() };
         let facts = saved::judged(facts, making.film(), samples);
         let film = making.film();
         let picture = saved::picture(film, &self.subject.identity);
-        let denoised = self.denoised(&picture, making)?;
+        let denoised = match filter {
+            Some(filter) => self.denoised(&picture, making, filter)?,
+            None => None,
+        };
         let of_first = aovs.iter().any(|aov| aov.is_of_first_hits());
         let first =
             of_first.then(|| self.tracer.first_hits(film.window(), samples[1], &self.control)).transpose()?;

@@ -26,8 +26,11 @@ mod weights;
 
 use highlights::Highlights;
 use planes::Planes;
-use regression::fitted;
+use regression::{fitted, work};
 use weights::{Guide, Kernel, means};
+
+/// What the method is called, with the number of its form: pictures of another number differ in more than their noise.
+pub const METHOD: &str = "nfor 1";
 
 /// Red, green and blue.
 const COLORS: usize = 3;
@@ -52,6 +55,9 @@ pub struct Noisy {
     pub guides: [Vec<[f32; FEATURES]>; 2],
 }
 
+/// What is told of work as it is done, in units of [`whole_work`].
+pub type Done<'d> = &'d (dyn Fn(u64) + Sync);
+
 /// A picture without noise, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clean {
@@ -74,13 +80,19 @@ const MUCH_WORSE: f32 = 2.0;
 /// Variance of features that is nothing.
 const LEAST_VARIANCE: f32 = 1e-8;
 
-/// The picture without noise, in the unit of the noisy one. No channel is below 0. What is no number counts as 0, and what is
-/// more than a hundred million times the mean as that.
+/// All the work that [`denoise`] tells of a picture of this size.
+pub fn whole_work([width, height]: [u32; 2]) -> u64 {
+    let pixels = width as usize * height as usize;
+    2 * work(pixels, SQUARINGS.len()) + work(pixels, 1)
+}
+
+/// The picture without noise, in the unit of the noisy one; how far it is is told to `done`, by any thread. No channel is
+/// below 0. What is no number counts as 0, and what is more than a hundred million times the mean as that.
 ///
 /// # Panics
 ///
 /// If a list does not have as many entries as the picture has pixels.
-pub fn denoise(noisy: &Noisy) -> Clean {
+pub fn denoise(noisy: &Noisy, done: Done) -> Clean {
     let size = noisy.size.map(|side| side as usize);
     let pixels = size[0] * size[1];
     let alpha = noisy.alpha.iter().flatten().map(Vec::len);
@@ -105,8 +117,8 @@ pub fn denoise(noisy: &Noisy) -> Clean {
     let highlights = Highlights::taken(&mut halves, &share, &mut left);
     let variance = noise::variance(&halves, &share, &noisy.variance, &left, unit);
     let features = features(noisy, size);
-    let [a, b] = first_pass(&halves, &share, &variance, &features);
-    let mut clean = second_pass(&a, &b, &share, &features);
+    let [a, b] = first_pass(&halves, &share, &variance, &features, done);
+    let mut clean = second_pass(&a, &b, &share, &features, done);
     highlights.give_back(&mut clean);
     finished(&clean, unit)
 }
@@ -136,14 +148,20 @@ fn features(noisy: &Noisy, size: [usize; 2]) -> [Planes; 2] {
 
 /// Both halves fitted, by that bandwidth which leaves the smaller error, or as they are where both leave a larger one than their
 /// noise (sections 5.2 and 5.3). `variance` is that of their mean.
-fn first_pass(halves: &[Planes; 2], share: &[f32], variance: &Planes, features: &[Planes; 2]) -> [Planes; 2] {
+fn first_pass(
+    halves: &[Planes; 2],
+    share: &[f32],
+    variance: &Planes,
+    features: &[Planes; 2],
+    done: Done,
+) -> [Planes; 2] {
     let others: Vec<f32> = share.iter().map(|share| 1.0 - share).collect();
     let of_half = [share, &others].map(|share| variance.scaled(share, |v, share| v / share));
     let mean = mixed(&halves[1], &halves[0], share);
     let fits = [0, 1].map(|half| {
         let variances = noise::floored(&of_half[half], &mean);
         let guide = Guide { values: &halves[half], variances: &variances };
-        fitted(&guide, &features[1 - half], &FIT, &SQUARINGS)
+        fitted(&guide, &features[1 - half], &FIT, &SQUARINGS, done)
     });
     let [a, b] = &fits;
     let mut estimates: Vec<Vec<f32>> =
@@ -203,12 +221,12 @@ fn mixed(rest: &Planes, one: &Planes, share: &[f32]) -> Planes {
 }
 
 /// The mean of both halves, without what noise is left in it (section 5.4).
-fn second_pass(a: &Planes, b: &Planes, share: &[f32], features: &[Planes; 2]) -> Planes {
+fn second_pass(a: &Planes, b: &Planes, share: &[f32], features: &[Planes; 2], done: Done) -> Planes {
     let mean = mixed(b, a, share);
     let left = a.zip(b, |a, b| (a - b) * (a - b)).scaled(share, |v, share| v * (share * (1.0 - share)));
     let features = features[0].zip(&features[1], |a, b| 0.5 * (a + b));
     let left = noise::floored(&left, &mean);
     let guide = Guide { values: &mean, variances: &left };
-    let [fitted] = fitted(&guide, &features, &FIT, &[0]);
+    let [fitted] = fitted(&guide, &features, &FIT, &[0], done);
     fitted
 }

@@ -4,9 +4,9 @@
 //! with the weights of [`Weights`], and every pixel is the mean of what the fits around it say of it, by the same weights
 //! (B. Bitterli et al., "Nonlinearly weighted first-order regression for denoising Monte Carlo renderings", 2016, section 5.2).
 
-use super::FEATURES;
 use super::planes::{Cut, LANES, Lane, Planes, TILE_HEIGHT, Tile};
 use super::weights::{Guide, Kernel, Weights};
+use super::{Done, FEATURES};
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f32x16};
 use rayon::prelude::*;
@@ -29,17 +29,24 @@ const TOGETHER: usize = 16;
 type Exact = [f64; LANES];
 
 /// Fits the three or four channels of a picture by features and by column and row, once for each of the bandwidths, which are
-/// given as by how many squarings each is narrower than that of the kernel: each squaring divides it by the root of two.
+/// given as by how many squarings each is narrower than that of the kernel: each squaring divides it by the root of two. The
+/// [`work`] of each tile is told.
 pub(super) fn fitted<const N: usize>(
     guide: &Guide,
     features: &Planes,
     kernel: &Kernel,
     squarings: &[u32; N],
+    done: Done,
 ) -> [Planes; N] {
     match guide.values.planes.len() {
-        4 => fitted_channels::<N, 4>(guide, features, kernel, squarings),
-        _ => fitted_channels::<N, 3>(guide, features, kernel, squarings),
+        4 => fitted_channels::<N, 4>(guide, features, kernel, squarings, done),
+        _ => fitted_channels::<N, 3>(guide, features, kernel, squarings, done),
     }
+}
+
+/// How much work it is to fit so many pixels so many times: to compare them takes about as long as a fit.
+pub(super) fn work(pixels: usize, fits: usize) -> u64 {
+    pixels as u64 * (1 + fits as u64)
 }
 
 /// The same of so many channels.
@@ -48,6 +55,7 @@ fn fitted_channels<const N: usize, const C: usize>(
     features: &Planes,
     kernel: &Kernel,
     squarings: &[u32; N],
+    done: Done,
 ) -> [Planes; N] {
     let rows = guide.values.rows_of_tiles();
     let bands: Vec<Vec<Band<C>>> = rows
@@ -63,6 +71,7 @@ fn fitted_channels<const N: usize, const C: usize>(
                         || fits.add(simd, *squarings, band),
                     ));
                 }
+                done(work(tile.width * tile.height, N));
             }
             bands
         })

@@ -17,8 +17,8 @@ use rayon::prelude::*;
 use std::fmt;
 
 pub use openexr::{
-    DENOISED, DENOISED_ALPHA, decode as decode_exr, decode_denoised, decode_head, decode_shown, decode_words,
-    is_exr,
+    DENOISED, DENOISED_ALPHA, DENOISED_BY, decode as decode_exr, decode_denoised, decode_head, decode_shown,
+    decode_words, is_exr,
 };
 
 /// The most pixels a picture in memory may have: 16384 × 8192.

@@ -139,8 +139,12 @@ pub const DENOISED: [&str; 3] = ["denoised.R", "denoised.G", "denoised.B"];
 /// Its alpha, if it has any.
 pub const DENOISED_ALPHA: &str = "denoised.A";
 
-/// The picture of the channels [`DENOISED`], which a build shows; none where these are not.
-pub fn decode_denoised(file: &[u8]) -> Result<Option<Picture>, CannotDecode> {
+/// The attribute that names what took the noise out.
+pub const DENOISED_BY: &str = "rtc.denoised";
+
+/// The picture of the channels [`DENOISED`], which a build shows, and what it was denoised by, as far as that is said; none
+/// where these are not.
+pub fn decode_denoised(file: &[u8]) -> Result<Option<(Picture, Option<String>)>, CannotDecode> {
     let meta = refuse_large(file)?;
     let has = |name: &str| {
         let mut channels = meta.headers.iter().flat_map(|header| &header.channels.list);
@@ -149,13 +153,18 @@ pub fn decode_denoised(file: &[u8]) -> Result<Option<Picture>, CannotDecode> {
     if !DENOISED.into_iter().all(has) {
         return Ok(None);
     }
-    decode_colors(file, DENOISED, DENOISED_ALPHA).map(|(picture, _)| Some(picture))
+    let mut attributes = meta.headers.iter().flat_map(|header| &header.own_attributes.other);
+    let by = attributes.find_map(|(name, value)| match value {
+        AttributeValue::Text(text) if name.eq(DENOISED_BY) => Some(text.to_string()),
+        _ => None,
+    });
+    decode_colors(file, DENOISED, DENOISED_ALPHA).map(|(picture, _)| Some((picture, by)))
 }
 
 /// The picture as a build shows it: without noise where there is that, else as [`decode`] has it.
 pub fn decode_shown(file: &[u8]) -> Result<(Picture, Facts), CannotDecode> {
     let (traced, facts) = decode(file)?;
-    Ok((decode_denoised(file)?.unwrap_or(traced), facts))
+    Ok((decode_denoised(file)?.map_or(traced, |(picture, _)| picture), facts))
 }
 
 /// Reads channels of red, green and blue, and of alpha if there is that.

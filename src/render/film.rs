@@ -9,7 +9,7 @@ use crate::develop::display;
 use crate::math::exp2;
 use crate::scene::Tonemap;
 pub(super) use pixel::counted;
-pub use pixel::{MOST_SAMPLES, Pixel, WORDS};
+pub use pixel::{GATHERED_WORDS, Gathered, MOST_SAMPLES, Pixel, WORDS};
 use rayon::prelude::*;
 
 /// A rectangle of pixels in the full picture, (0, 0) at its top left.
@@ -122,28 +122,6 @@ impl Film {
     pub fn merge(&mut self, other: &Film) {
         assert_eq!(self.scale, other.scale, "films of different scales cannot be merged");
         self.merge_pixels(other.window, &other.pixels);
-    }
-
-    /// The samples of each pixel in two parts: those that one of two films of the same window and scale has, that which is
-    /// nearer to half of them, and the others. This one holds all of them.
-    pub(super) fn halved(&self, early: &[Film; 2]) -> [Film; 2] {
-        let [first, second] = early.each_ref().map(|film| &film.pixels);
-        let halved = |((all, first), second): ((&Pixel, &Pixel), &Pixel)| {
-            let from_half = |pixel: &Pixel| (2 * pixel.samples()).abs_diff(all.samples());
-            let some = if from_half(first) <= from_half(second) { first } else { second };
-            (*some, all.without(some))
-        };
-        let (some, others) = self.pixels.iter().zip(first).zip(second).map(halved).unzip();
-        [some, others].map(|pixels| Film { pixels, ..*self })
-    }
-
-    /// Takes the pixels of a window from another film of the same window and scale.
-    pub(super) fn replace(&mut self, part: Window, other: &Film) {
-        debug_assert!(self.window == other.window && self.scale == other.scale);
-        for y in part.y..part.y + part.height {
-            let row = self.window.index(part.x, y)..self.window.index(part.x, y) + part.width as usize;
-            self.pixels[row.clone()].copy_from_slice(&other.pixels[row]);
-        }
     }
 
     /// The least error that all but one in a hundred pixels keep in every channel: see [`Film::shown_error`].

@@ -4,9 +4,9 @@
 //! of one that was made at once.
 
 use super::control::{Cancelled, Control};
-use super::film::{Film, Window};
+use super::film::{Film, GATHERED_WORDS, Gathered, Window};
 use super::halt::{BLOCK, Limit, Limits, noisy};
-use super::sums::Sums;
+use super::sums::{self, Sums};
 use super::{PASS, Prepass, Rendered, Shown, Tracer};
 use std::ops::Range;
 use std::time::{Duration, Instant};
@@ -22,8 +22,8 @@ const FIRST_PATHS: u64 = 1 << 19;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Making {
     film: Film,
-    /// What the film was at two numbers of samples, for who asks: see [`Making::in_halves`].
-    early: Option<[Film; 2]>,
+    /// What the film's light was at two numbers of samples, for who asks: see [`Making::in_halves`].
+    early: Option<[Vec<Gathered>; 2]>,
     /// The number of each pixel's first sample.
     start: u32,
     /// How what is shown was when it was last judged where samples go, if it was.
@@ -66,10 +66,15 @@ impl Making {
     /// The same of a picture without samples, with the sums of the first ones kept apart too: two pictures of the same light
     /// tell noise from what is there. Each pixel's last power of two samples is kept, and the one before it, of which one is
     /// from a third to two thirds of all, whenever the picture stops. Every other sample would tell too much noise: neighbours
-    /// in the sequence are each other's opposites. It takes twice as much memory again.
+    /// in the sequence are each other's opposites. It takes two thirds as much memory again.
     pub fn in_halves(self) -> Making {
-        let film = || Film::new(self.film.window(), self.film.scale());
-        Making { early: Some([film(), film()]), ..self }
+        let none = vec![Gathered::default(); self.film.pixels().len()];
+        Making { early: Some([none.clone(), none]), ..self }
+    }
+
+    /// The same with what [`Making::early`] was, by what gives the words of each. None where its first samples cannot be so.
+    pub fn with_early(self, words: impl Fn(usize, usize) -> Option<[u32; GATHERED_WORDS]>) -> Option<Making> {
+        Some(Making { early: Some(sums::early(&self.film, words)?), ..self })
     }
 
     /// One that was put aside: its film, the number of its first sample, what each pixel was on the way to, row by row, and by
@@ -99,10 +104,14 @@ impl Making {
         self.early.is_some()
     }
 
-    /// The sums of each pixel's first samples, about half of them, and of the others, which together are [`Making::film`] to the
-    /// bit; none unless it is [`Making::in_halves`].
-    pub fn halves(&self) -> Option<[Film; 2]> {
-        Some(self.film.halved(self.early.as_ref()?))
+    /// The light of each pixel's first samples: of half the last power of two of them, and of that. None unless [`Making::in_halves`].
+    pub fn early(&self) -> Option<&[Vec<Gathered>; 2]> {
+        self.early.as_ref()
+    }
+
+    /// The light of each pixel's first samples, about half of them, and of the others; none unless [`Making::in_halves`].
+    pub fn halves(&self) -> Option<[Vec<Gathered>; 2]> {
+        sums::halved(&self.film, self.early()?)
     }
 
     /// Its sums, and nothing else.

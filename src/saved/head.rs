@@ -1,8 +1,8 @@
 //! What a file says of the samples in it, before they are read.
 
 use super::{
-    CHANNELS, CHECKSUM, FORM, JUDGED, PREFIX, PROGRAM, Refused, SCALE, SHARE, START, Share, Subject, VERSION,
-    judged_from, refused, unreadable,
+    CHANNELS, CHECKSUM, EARLY_CHANNELS, FORM, JUDGED, PREFIX, PROGRAM, Refused, SCALE, SHARE, START, Share,
+    Subject, VERSION, channels, judged_from, refused, unreadable,
 };
 use crate::output::{self, Facts, Frame, decode_head};
 use crate::render::film::MOST_SAMPLES;
@@ -67,14 +67,16 @@ impl Head {
     }
 }
 
-/// Whether it has the channels of sums, each once, and beside them no more than those of the picture.
+/// Whether it has the channels of sums, each once, maybe those of the first samples too, and beside them no more than those of
+/// the picture.
 fn has_channels(head: &output::Head) -> bool {
     let mut words: Vec<&str> = head.words.iter().map(String::as_str).collect();
     words.sort_unstable();
-    let mut expected = CHANNELS;
+    let mut expected: Vec<&str> = channels().take(words.len()).collect();
     expected.sort_unstable();
     let colors = ["R", "G", "B", "A"];
-    words == expected
+    [CHANNELS.len(), CHANNELS.len() + EARLY_CHANNELS.len()].contains(&words.len())
+        && words == expected
         && head.others.len() <= colors.len()
         && head.others.iter().all(|name| colors.contains(&name.as_str()))
 }

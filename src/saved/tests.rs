@@ -41,6 +41,14 @@ fn saved(share: Option<Share>, samples: Range<u32>, aim: u32) -> Saved {
     Saved { subject: Subject { program: "rtc 0".into(), identity: identity(), share }, making, facts }
 }
 
+/// The same with its first samples apart: of `more`, and of `less`.
+fn in_halves(saved: Saved, less: u32, more: u32) -> Saved {
+    let early = [less, more].map(|samples| film(0..samples));
+    let words = |which: usize, index: usize| Some(early[which].pixels()[index].gathered().words());
+    let making = saved.making.with_early(words).expect("they are among its samples");
+    Saved { making, ..saved }
+}
+
 fn bytes_of(saved: &Saved) -> Vec<u8> {
     saved.subject.encode(&saved.making, &saved.facts).expect("it can be written")
 }
@@ -51,7 +59,13 @@ fn share(index: u32) -> Share {
 
 #[test]
 fn what_is_written_is_read() {
-    for saved in [saved(None, 0..5, 9), saved(Some(share(2)), 4..9, 5), saved(None, 0..0, 0)] {
+    let apart = [
+        in_halves(saved(None, 0..5, 9), 2, 4),
+        in_halves(saved(None, 0..1, 1), 0, 1),
+        in_halves(saved(None, 0..0, 3), 0, 0),
+    ];
+    let all = [saved(None, 0..5, 9), saved(Some(share(2)), 4..9, 5), saved(None, 0..0, 0)];
+    for saved in all.into_iter().chain(apart) {
         let bytes = bytes_of(&saved);
         assert_eq!(Saved::decode(&bytes), Ok(saved.clone()));
         assert_eq!(bytes_of(&saved), bytes, "always the same bytes");
@@ -167,6 +181,9 @@ fn a_head_is_judged_before_pixels_are_read() {
     refuses(Channels { texts: vec![], ..sums() }, "no exact sums");
     let plane = crate::output::Plane { name: "Z".into(), values: vec![0.0; 200] };
     refuses(Channels { planes: vec![plane], ..sums() }, "other channels");
+    let halves = words(&in_halves(saved(None, 0..5, 5), 2, 4).making);
+    assert_eq!(halves.len(), CHANNELS.len() + EARLY_CHANNELS.len());
+    refuses(Channels { words: halves[..halves.len() - 1].to_vec(), ..sums() }, "other channels");
     let more = Words { name: "sums.more".into(), values: vec![0; 200] };
     refuses(Channels { words: [sums().words, vec![more]].concat(), ..sums() }, "other channels");
     refuses(Channels { words: sums().words.split_off(1), ..sums() }, "other channels");
@@ -207,6 +224,26 @@ fn sums_that_cannot_be_are_refused() {
             large[(word - 6) / 4 * 4 + 9] = 0x7fff_ffff;
         }
         assert_eq!(Pixel::from_words(large), None, "word {word}");
+    }
+}
+
+#[test]
+fn first_samples_that_are_none_of_all_are_refused() {
+    let with = |change: &dyn Fn(&mut [u32; GATHERED_WORDS])| {
+        let early = [2, 4].map(|samples| film(0..samples));
+        let words = |which: usize, index: usize| {
+            let mut words = early[which].pixels()[index].gathered().words();
+            change(&mut words);
+            Some(words)
+        };
+        saved(None, 0..5, 5).making.with_early(words)
+    };
+    assert!(with(&|_| ()).is_some());
+    // Of each sum the upper half: more than 4 samples can have, and so little that the fifth would have too much.
+    for word in (1..GATHERED_WORDS).step_by(2) {
+        for wrong in [0x7fff_ffff, 0x8000_0000, 5 << 10, (-5i32 << 10) as u32] {
+            assert_eq!(with(&|words| words[word] = wrong), None, "word {word}: {wrong:x}");
+        }
     }
 }
 

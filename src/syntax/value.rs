@@ -155,11 +155,10 @@ fn infix(builder: &Builder, left: Deep<Expr>, operator: &Node, right: Deep<Expr>
         builder.report(errors::operator_for_function(sign, function, at, left.span, right.span));
         return invalid(span);
     }
-    if operator.as_str().trim_ascii_end() == "|" {
+    if operator.as_str() == "|" {
         let sides = [&left, &right];
         let placement = sides.iter().any(|side| is_placement(side));
-        let sign = builder.trimmed(operator);
-        builder.report(errors::bar(sign, placement, sides.iter().any(|side| is_condition(side))));
+        builder.report(errors::bar(at, placement, sides.iter().any(|side| is_condition(side))));
         if !placement {
             return invalid(span);
         }
@@ -215,8 +214,7 @@ fn foreign(builder: &Builder, operator: &Node) -> Option<BinaryOp> {
         Rule::foreign_product => BinaryOp::Divide,
         _ => return None,
     };
-    let place = builder.trimmed(operator);
-    builder.report(errors::foreign_operator(operator.as_str().trim_ascii_end(), here.symbol(), place));
+    builder.report(errors::foreign_operator(operator.as_str(), here.symbol(), builder.span(operator)));
     Some(here)
 }
 

@@ -270,9 +270,9 @@ impl Studio<'_, '_> {
         let findings = self.findings(&compiled, scene, &traced);
         self.say(&findings)?;
         if !arguments.quiet {
-            let (samples, time) = (build::samples(&traced), duration(start.elapsed()));
+            let taken = build::taken(&traced, start.elapsed());
             let went_on = traced.account.went_on().map_or(String::new(), |said| format!(", {said}"));
-            terminal.line(&format!("{}: {samples} in {time}{went_on}{anew}", self.orders.name(number)));
+            terminal.line(&format!("{}: {taken}{went_on}{anew}", self.orders.name(number)));
         }
         let shown = traced.denoised.map_or(traced.picture, |denoised| denoised.picture);
         Ok(Shot::Made(shown, traced.facts))

@@ -18,18 +18,19 @@ const MOST_WEIGHT: u64 = (8 << 40) - 1;
 /// Numbers of 32 bits that hold the sums of a pixel: see [`Pixel::words`].
 pub const WORDS: usize = 2 * 3 + 4 * PRODUCTS.len() + 2 * 2 + 1;
 
+/// Those that hold the sums of its light: see [`Gathered::words`].
+pub const GATHERED_WORDS: usize = 2 * 3 + 2 * 2;
+
 /// The channels whose products are summed, red, green and blue being 0, 1 and 2.
 const PRODUCTS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [0, 2], [1, 2]];
 
 /// What of a pixel's variance is too little to be told from none.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// The sums of one pixel, in units of 1/scale.
+/// The light of some samples of a pixel, in units of 1/scale, and what covers it: all but how the samples vary.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Pixel {
+pub struct Gathered {
     sum: [i64; 3],
-    /// Of the products of [`PRODUCTS`], sample by sample.
-    products: [i128; 6],
     /// Sums of the filter weights of samples that met something, and of those that met nothing in front of a
     /// transparent background.
     covered: i64,
@@ -37,55 +38,16 @@ pub struct Pixel {
     samples: u32,
 }
 
-impl Pixel {
-    /// Adds a radiance. One that is too large for the scale is cut; one that is no number counts as black.
-    #[inline]
-    pub fn add(&mut self, radiance: Rgb, scale: f64) {
-        debug_assert!(radiance.is_finite(), "a path carries {radiance}");
-        let value = fixed(radiance, scale);
-        for (sum, v) in self.sum.iter_mut().zip(value) {
-            *sum += v;
-        }
-        for (sum, [a, b]) in self.products.iter_mut().zip(PRODUCTS) {
-            *sum += i128::from(value[a]) * i128::from(value[b]);
-        }
-        self.samples += 1;
+impl Gathered {
+    /// Mean radiance, in W/(m²·sr).
+    pub fn mean(&self, scale: f64) -> Rgb {
+        let [r, g, b] = self.sum.map(|sum| sum as f64);
+        if self.samples == 0 { Rgb::ZERO } else { Rgb::new(r, g, b) / (scale * f64::from(self.samples)) }
     }
 
-    /// Adds the weight of a sample to what is covered, or to what is open to a transparent background.
-    #[inline]
-    pub fn cover(&mut self, open: bool, weight: f64) {
-        let sum = if open { &mut self.open } else { &mut self.covered };
-        *sum += nearest(weight * WEIGHT_SCALE);
-    }
-
-    /// Adds the samples of another.
-    pub fn merge(&mut self, other: &Pixel) {
-        for (sum, v) in self.sum.iter_mut().zip(other.sum) {
-            *sum += v;
-        }
-        for (sum, v) in self.products.iter_mut().zip(other.products) {
-            *sum += v;
-        }
-        self.covered += other.covered;
-        self.open += other.open;
-        self.samples += other.samples;
-    }
-
-    /// What is left without the samples of another, which are among these.
-    pub(super) fn without(&self, other: &Pixel) -> Pixel {
-        Pixel {
-            sum: std::array::from_fn(|channel| self.sum[channel] - other.sum[channel]),
-            products: std::array::from_fn(|product| self.products[product] - other.products[product]),
-            covered: self.covered - other.covered,
-            open: self.open - other.open,
-            samples: self.samples - other.samples,
-        }
-    }
-
-    /// By the weights of the very samples there are, so that it is exactly 1 or 0 where all of them agree. A filter
-    /// with negative weights may lead beyond these, and is cut.
-    pub(in super::super) fn alpha(&self) -> f64 {
+    /// The share that is covered. By the weights of the very samples there are, so that it is exactly 1 or 0 where all of them
+    /// agree. A filter with negative weights may lead beyond these, and is cut.
+    pub fn alpha(&self) -> f64 {
         match (self.covered, self.open) {
             (_, 0) => 1.0,
             (0, _) => 0.0,
@@ -96,14 +58,111 @@ impl Pixel {
         }
     }
 
+    /// How many samples it is of.
+    pub fn samples(&self) -> u32 {
+        self.samples
+    }
+
+    /// The sums in words as [`Pixel::words`] has them, without the number of samples.
+    pub fn words(&self) -> [u32; GATHERED_WORDS] {
+        let mut words = [0; GATHERED_WORDS];
+        let sums = self.sum.iter().chain([&self.covered, &self.open]);
+        for (word, half) in words.iter_mut().zip(sums.flat_map(|sum| halves(*sum as u64))) {
+            *word = half;
+        }
+        words
+    }
+
+    /// The light of so many samples with these sums; none where they cannot have them.
+    pub fn from_words(words: [u32; GATHERED_WORDS], samples: u32) -> Option<Gathered> {
+        let [r, g, b, covered, open] = [0, 2, 4, 6, 8].map(|i| two(&words, i) as i64);
+        Gathered { sum: [r, g, b], covered, open, samples }.checked()
+    }
+
+    /// What is left without that of some of these samples; none where it cannot be of some.
+    pub(in super::super) fn without(&self, some: &Gathered) -> Option<Gathered> {
+        let [r, g, b] = [0, 1, 2].map(|channel| self.sum[channel].checked_sub(some.sum[channel]));
+        let others = Gathered {
+            sum: [r?, g?, b?],
+            covered: self.covered.checked_sub(some.covered)?,
+            open: self.open.checked_sub(some.open)?,
+            samples: self.samples.checked_sub(some.samples)?,
+        };
+        others.checked()
+    }
+
+    /// The same, if so many samples can have such sums.
+    fn checked(self) -> Option<Gathered> {
+        let n = u64::from(self.samples);
+        let can_be = self.samples <= MOST_SAMPLES
+            && self.sum.iter().all(|sum| sum.unsigned_abs() <= n * MOST_FIXED as u64)
+            && [self.covered, self.open].iter().all(|sum| sum.unsigned_abs() <= n * MOST_WEIGHT);
+        can_be.then_some(self)
+    }
+}
+
+/// The sums of one pixel, in units of 1/scale.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Pixel {
+    light: Gathered,
+    /// Of the products of [`PRODUCTS`], sample by sample.
+    products: [i128; 6],
+}
+
+impl Pixel {
+    /// Adds a radiance. One that is too large for the scale is cut; one that is no number counts as black.
+    #[inline]
+    pub fn add(&mut self, radiance: Rgb, scale: f64) {
+        debug_assert!(radiance.is_finite(), "a path carries {radiance}");
+        let value = fixed(radiance, scale);
+        for (sum, v) in self.light.sum.iter_mut().zip(value) {
+            *sum += v;
+        }
+        for (sum, [a, b]) in self.products.iter_mut().zip(PRODUCTS) {
+            *sum += i128::from(value[a]) * i128::from(value[b]);
+        }
+        self.light.samples += 1;
+    }
+
+    /// Adds the weight of a sample to what is covered, or to what is open to a transparent background.
+    #[inline]
+    pub fn cover(&mut self, open: bool, weight: f64) {
+        let sum = if open { &mut self.light.open } else { &mut self.light.covered };
+        *sum += nearest(weight * WEIGHT_SCALE);
+    }
+
+    /// Adds the samples of another.
+    pub fn merge(&mut self, other: &Pixel) {
+        let (own, light) = (&mut self.light, &other.light);
+        for (sum, v) in own.sum.iter_mut().zip(light.sum) {
+            *sum += v;
+        }
+        for (sum, v) in self.products.iter_mut().zip(other.products) {
+            *sum += v;
+        }
+        own.covered += light.covered;
+        own.open += light.open;
+        own.samples += light.samples;
+    }
+
+    /// Its light without how its samples vary.
+    pub fn gathered(&self) -> &Gathered {
+        &self.light
+    }
+
+    /// As [`Gathered::alpha`].
+    pub(in super::super) fn alpha(&self) -> f64 {
+        self.light.alpha()
+    }
+
+    /// As [`Gathered::mean`].
     pub(in super::super) fn mean(&self, scale: f64) -> Rgb {
-        let [r, g, b] = self.sum.map(|sum| sum as f64);
-        if self.samples == 0 { Rgb::ZERO } else { Rgb::new(r, g, b) / (scale * f64::from(self.samples)) }
+        self.light.mean(scale)
     }
 
     /// How many samples it holds.
     pub fn samples(&self) -> u32 {
-        self.samples
+        self.light.samples
     }
 
     /// The sums as they are, each in words of 32 bits, the lowest first: red, green and blue in two each, their squares and then
@@ -112,10 +171,11 @@ impl Pixel {
     pub fn words(&self) -> [u32; WORDS] {
         let two = |v: &i64| halves(*v as u64);
         let four = |v: &i128| [halves(*v as u64), halves((*v >> 64) as u64)];
-        let pairs = self.sum.iter().map(two);
+        let Gathered { sum, covered, open, samples } = &self.light;
+        let pairs = sum.iter().map(two);
         let pairs = pairs.chain(self.products.iter().flat_map(four));
-        let pairs = pairs.chain([&self.covered, &self.open].map(two));
-        let mut words = [self.samples; WORDS];
+        let pairs = pairs.chain([covered, open].map(two));
+        let mut words = [*samples; WORDS];
         for (word, half) in words.iter_mut().zip(pairs.flatten()) {
             *word = half;
         }
@@ -124,27 +184,21 @@ impl Pixel {
 
     /// The pixel with these sums; none where so many samples cannot have them.
     pub fn from_words(words: [u32; WORDS]) -> Option<Pixel> {
-        let two = |i: usize| u64::from(words[i]) | u64::from(words[i + 1]) << 32;
+        let two = |i: usize| two(&words, i);
         let four = |i: usize| (u128::from(two(i)) | u128::from(two(i + 2)) << 64) as i128;
         const WEIGHTS: usize = WORDS - 5;
-        let pixel = Pixel {
+        let light = Gathered {
             sum: [0, 2, 4].map(|i| two(i) as i64),
-            products: std::array::from_fn(|product| four(6 + 4 * product)),
             covered: two(WEIGHTS) as i64,
             open: two(WEIGHTS + 2) as i64,
             samples: words[WORDS - 1],
         };
-        if pixel.samples > MOST_SAMPLES {
-            return None;
-        }
-        let n = u64::from(pixel.samples);
-        let most = MOST_FIXED as u64;
-        let sums = pixel.sum.iter().all(|sum| sum.unsigned_abs() <= n * most);
-        let greatest = u128::from(n) * u128::from(most) * u128::from(most);
+        let pixel =
+            Pixel { light: light.checked()?, products: std::array::from_fn(|product| four(6 + 4 * product)) };
+        let greatest = u128::from(light.samples) * (MOST_FIXED as u128) * (MOST_FIXED as u128);
         let products = pixel.products.iter().all(|sum| sum.unsigned_abs() <= greatest);
         let squares = pixel.products[..3].iter().all(|sum| *sum >= 0);
-        let weights = [pixel.covered, pixel.open].iter().all(|sum| sum.unsigned_abs() <= n * MOST_WEIGHT);
-        (sums && products && squares && weights).then_some(pixel)
+        (products && squares).then_some(pixel)
     }
 
     /// Errors that are independent of each other, and together that of the mean, in W/(m²·sr), as if samples were independent
@@ -176,15 +230,16 @@ impl Pixel {
 
     /// The covariance of the channels of the mean, in units of the fixed point.
     fn covariance(&self) -> Option<[[f64; 3]; 3]> {
-        if self.samples < 2 {
+        let Gathered { sum: sums, samples, .. } = self.light;
+        if samples < 2 {
             return None;
         }
-        let n = f64::from(self.samples);
+        let n = f64::from(samples);
         let mut covariance = [[0.0; 3]; 3];
         for (sum, [a, b]) in self.products.iter().zip(PRODUCTS) {
             // Exact: nothing is lost where a pixel is bright and even.
-            let products = i128::from(self.samples) * sum;
-            let difference = products - i128::from(self.sum[a]) * i128::from(self.sum[b]);
+            let products = i128::from(samples) * sum;
+            let difference = products - i128::from(sums[a]) * i128::from(sums[b]);
             let v = difference as f64 / (n * n * (n - 1.0));
             (covariance[a][b], covariance[b][a]) = (v, v);
         }
@@ -196,6 +251,11 @@ impl Pixel {
         let Some(errors) = self.errors(scale) else { return f64::INFINITY };
         errors.iter().map(|error| luminance(*error) * luminance(*error)).sum::<f64>().sqrt()
     }
+}
+
+/// The number whose lower half is this word, and the upper half the next.
+fn two(words: &[u32], i: usize) -> u64 {
+    u64::from(words[i]) | u64::from(words[i + 1]) << 32
 }
 
 /// The lower and the upper half of a number.
