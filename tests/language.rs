@@ -68,18 +68,23 @@ proptest! {
     }
 
     #[test]
-    fn off_is_as_good_as_deleted(index in 0..4_usize) {
+    fn off_is_as_good_as_deleted(index in 0..5_usize) {
         let lines = [
             "sphere { radius: 1cm }",
             "for i in range(5) { sphere { radius: 1cm, at: (i, 1, 0)m } }",
             "group { sphere { radius: 2cm } }",
             "if true { sphere { radius: 3cm } }",
+            "lens { aperture: 8cm, focus: 3m }",
         ];
         let marked = |mark: &str| {
             let line = |(i, line): (usize, &&str)| if i == index { format!("{mark}{line}") } else { line.to_string() };
-            lines.iter().enumerate().map(line).collect::<Vec<_>>().join("\n")
+            let mut all = lines.iter().enumerate().map(line).collect::<Vec<_>>();
+            let lens = all.pop().unwrap();
+            scene(&format!("{}\ncamera {{\n{lens}\n}}", all.join("\n")))
         };
-        prop_assert_eq!(surfaces(&scene(&marked("@off "))), surfaces(&scene(&marked("// "))));
+        let (off, deleted) = (marked("@off "), marked("// "));
+        prop_assert_eq!(surfaces(&off), surfaces(&deleted));
+        prop_assert_eq!(off.camera, deleted.camera);
     }
 }
 
