@@ -41,6 +41,12 @@ def end(child, sign):
     return child.returncode, said
 
 
+def worked(child):
+    """The seconds of processors that a build has taken."""
+    fields = pathlib.Path(f"/proc/{child.pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 def run(*arguments, code=0):
     ended, said = end(start(*arguments), None)
     if ended != code:
@@ -72,7 +78,7 @@ class Kept:
 
     def __init__(self, picture, *arguments):
         self.checkpoint = pathlib.Path(f"{picture}.checkpoint")
-        self.aside = pathlib.Path(f".{picture}.checkpoint.tmp")
+        self.aside = pathlib.Path(f".rtc-{picture}.checkpoint.tmp")
         self.arguments = ("build", "ball.rt", *arguments, "-o", picture, *KEEP)
         self.files, self.last, self.done = f"{picture}*", [0, 0], 0
 
@@ -100,7 +106,7 @@ class Film(Kept):
         self.files, self.last, self.done = "f*.exr*", [0, 0], 0
 
     def writing(self):
-        return any(pathlib.Path().glob(".f*.exr.checkpoint.tmp"))
+        return any(pathlib.Path().glob(".rtc-f*.exr.checkpoint.tmp"))
 
     def look(self):
         done = len(list(pathlib.Path().glob("f*.exr.made")))
@@ -122,10 +128,11 @@ def until_writing(build, child):
 
 def killed(build, times):
     """Kills a build again and again; each time it goes on. Gives how often it was killed while it wrote."""
-    within = number = 0
+    within = number = starts = 0
     while number < times:
         child = build.start()
-        if number % 2:
+        starts += 1
+        if starts % 2:
             until_writing(build, child)
         else:
             time.sleep(random.uniform(0, 1.0))
@@ -134,6 +141,8 @@ def killed(build, times):
             # Done before it was killed: from its beginning once more.
             remove(build.files)
             build.last, build.done = [0, 0], 0
+            if starts > 4 * times:
+                sys.exit(f"{build.arguments}: too soon done to be killed {times} times")
             continue
         number += 1
         if code != -signal.SIGKILL:
@@ -170,6 +179,7 @@ def pictures_of_samples(times):
     same("ball.exr", "one.exr")
     remove("*.exr*")
     print(f"  a picture: {times} kills, {within} of them while it wrote, {most} samples")
+    return within
 
 
 def pictures_of_noise(times):
@@ -184,6 +194,7 @@ def pictures_of_noise(times):
     same("calm.exr", "one.exr")
     remove("*.exr*")
     print(f"  a noise target: {times} kills, {within} of them while it wrote,{said.split(',')[1].split(' in ')[0]}")
+    return within
 
 
 def shares(times):
@@ -196,6 +207,7 @@ def shares(times):
     same("part.exr", "one.exr")
     remove("*.exr*")
     print(f"  a share: {times} kills, {within} of them while it wrote, at {least} to {most} samples then")
+    return within
 
 
 def films(times):
@@ -209,6 +221,7 @@ def films(times):
         same(f"f{frame}.exr", f"one{frame}.exr")
     remove("*.exr*")
     print(f"  a film: {times} kills, {within} of them while it wrote, {build.done} of 12 frames done then")
+    return within
 
 
 def asked_to_end(times):
@@ -230,7 +243,10 @@ def asked_to_end(times):
         remove("*.checkpoint")
     for name in ("SIGTERM", "SIGINT"):
         child = start("build", "ball.rt", "--size", "320x240", "--samples", 1_000_000, "-o", "ball.exr", "--checkpoint=own")
-        time.sleep(1.5)
+        # What it will write is there once it heeds signals.
+        while not os.path.exists(".rtc-ball.exr.tmp") and child.poll() is None:
+            time.sleep(0.01)
+        time.sleep(1)
         if os.path.exists("own"):
             sys.exit("there is a checkpoint before it is time")
         child.send_signal(signal.SIGUSR1)
@@ -240,7 +256,10 @@ def asked_to_end(times):
                 sys.exit("SIGUSR1 wrote no checkpoint")
             time.sleep(0.01)
         before, written = samples("own"), os.stat("own").st_mtime_ns
-        time.sleep(0.7)
+        # Enough to have traced more, however busy the machine is.
+        enough = worked(child) + 1.5
+        while worked(child) < enough and child.poll() is None:
+            time.sleep(0.01)
         code, said = end(child, getattr(signal, name))
         fewer = any(own < earlier for own, earlier in zip(samples("own"), before))
         if code != 130 or fewer or os.stat("own").st_mtime_ns == written:
@@ -307,10 +326,8 @@ pathlib.Path("ball.rt").write_text(SCENE)
 try:
     asked_to_end(12)
     full_disk(8)
-    pictures_of_samples(92)
-    pictures_of_noise(40)
-    shares(30)
-    films(30)
+    if 0 in (pictures_of_samples(92), pictures_of_noise(40), shares(30), films(30)):
+        sys.exit("one was never killed while it wrote")
     nothing_left("ball.rt")
 finally:
     for child in running:
