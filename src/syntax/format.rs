@@ -11,7 +11,7 @@ mod print;
 
 use super::ast::{Body, File};
 use super::errors::Sink;
-use super::{Limits, cut, lookalikes, parse};
+use super::{BLANKS, Limits, cut, lookalikes, parse};
 use crate::diagnostic::Diagnostic;
 use crate::span::{SourceId, Span};
 use print::{Printer, Unit};
@@ -112,7 +112,12 @@ fn broken(file: &File, text: &str, slips: &[Diagnostic]) -> Vec<Range<usize>> {
         let comment = file.comments.partition_point(|comment| comment.span.range().start <= place.start);
         let comment = file.comments[..comment].last().map_or(0, |comment| comment.span.range().end);
         let end = end.max(if place.start < comment { comment } else { 0 });
-        let range = start..start.max(text[..end].trim_ascii_end().len());
+        let mut range = start..start.max(text[..end].trim_ascii_end().len());
+        // How lines are indented against each other may decide how they are read.
+        if text[range.clone()].contains('\n') {
+            let before = text[..start].trim_end_matches(BLANKS);
+            range.start = if before.is_empty() || before.ends_with('\n') { before.len() } else { start };
+        }
         match ranges.last_mut() {
             Some(before) if range.start < before.end => before.end = before.end.max(range.end),
             _ => ranges.push(range),
