@@ -188,7 +188,7 @@ impl<'t> Builder<'t> {
         self.source.depth
     }
 
-    /// An item that was not parsed. What it seems to define counts as given.
+    /// An item that was not parsed. What it seems to define counts as given, unless its name was read from other characters.
     pub(super) fn unread(&self) -> Entry {
         let mut words = self.text.split_ascii_whitespace();
         let _kind = words.next();
@@ -200,6 +200,7 @@ impl<'t> Builder<'t> {
             let start = word.as_ptr().addr() - self.text.as_ptr().addr();
             Name { text: SmolStr::new(word), span: self.at(start, start + word.len()) }
         });
+        let name = name.filter(|name| self.source.text.get(name.span.range()) == Some(name.text.as_str()));
         Entry::Broken(Broken { name, span: self.whole() })
     }
 
