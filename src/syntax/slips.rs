@@ -323,8 +323,8 @@ impl<'t> Builder<'t> {
         })
     }
 
-    /// `sphere "ball" { … }`, `sphere 2nd { … }`, `sphere my-ball { … }`: what stands as the name of a thing and cannot be
-    /// one, and the name that is in it.
+    /// `sphere "ball" { … }`, `sphere 2nd { … }`, `sphere my-ball { … }`: what stands as the name of a thing and cannot
+    /// be one, and the name that is in it.
     pub(super) fn no_name(&self, kind: &str, start: usize) -> Option<(Diagnostic, Option<Name>)> {
         let text = self.after(start);
         if let Some(quoted) = text.strip_prefix('"') {
