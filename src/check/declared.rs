@@ -133,11 +133,17 @@ impl Checker<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::TYPES;
-    use crate::syntax::TYPE_WORDS;
+    use super::{Declared, TYPES, Type};
+    use crate::schema::PLACED;
+    use crate::syntax::{PLACED_WORDS, RANGED_WORDS, RESERVED, TYPE_WORDS};
 
     #[test]
     fn the_parser_knows_their_names() {
         assert!(TYPES.iter().map(|(name, _)| name).eq(TYPE_WORDS));
+        let ranged = |ty: &Declared| matches!(ty.ty(), Type::Scalar(_));
+        let ranged = TYPES.iter().filter(|(name, ty)| ranged(ty) && *name != "length").map(|(name, _)| name);
+        assert!(ranged.eq(RANGED_WORDS));
+        let placed = PLACED.iter().map(|field| &field.name).filter(|name| !RESERVED.contains(name));
+        assert!(placed.eq(PLACED_WORDS));
     }
 }

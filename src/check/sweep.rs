@@ -11,7 +11,7 @@ use crate::schema::FieldType;
 use crate::source::Sources;
 use crate::span::Span;
 use crate::syntax;
-use crate::syntax::ast::{self, Argument, BinaryOp, ExprKind as Tree, Name, Path};
+use crate::syntax::ast::{self, Argument, BinaryOp, ExprKind as Tree, Name, Path, UnaryOp};
 
 /// Which frame of a film, in the order of time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,22 +111,34 @@ pub fn words(given: &[String], moment: Moment, is_int: impl Fn(&str) -> bool) ->
         let [a, b] = setting.ends.as_deref()?;
         let Tree::Call { arguments, .. } = &setting.value.kind else { return None };
         let Tree::Number { value: share, .. } = arguments.last()?.value.kind else { return None };
-        let mixed = |a: f64, b: f64| {
-            let value = a * (1.0 - share) + b * share;
-            if is_int(&setting.name.text) { value.round() } else { value }
-        };
-        let value = match (&a.kind, &b.kind) {
-            (Tree::Number { value: a, .. }, Tree::Number { value: b, .. }) => mixed(*a, *b).to_string(),
-            (Tree::Quantity { value: a, unit }, Tree::Quantity { value: b, unit: other })
-                if unit.text == other.text =>
-            {
-                format!("{}{}", mixed(*a, *b), unit.text)
+        let int = is_int(&setting.name.text);
+        let value = match (plain(a), plain(b)) {
+            (Some((a, unit)), Some((b, other))) if unit == other => {
+                let value = a * (1.0 - share) + b * share;
+                // There is no whole number `-0`.
+                format!("{}{unit}", if int { value.round() + 0.0 } else { value })
             }
-            _ => format!("mix({}, {}, {share})", sources.text(a.span), sources.text(b.span)),
+            _ => {
+                let mix = format!("mix({}, {}, {share})", sources.text(a.span), sources.text(b.span));
+                if int { format!("round({mix})") } else { mix }
+            }
         };
         Some(format!("{} = {value}", setting.name.text))
     };
     settings.iter().filter_map(words).collect()
+}
+
+/// What a number is, and its unit, where nothing is computed: `3`, `-90deg`.
+fn plain(value: &ast::Expr) -> Option<(f64, &str)> {
+    match &value.kind {
+        Tree::Number { value, .. } => Some((*value, "")),
+        Tree::Quantity { value, unit } => Some((*value, &unit.text)),
+        Tree::Unary { operator: UnaryOp::Negate, operand } => {
+            plain(operand).map(|(value, unit)| (-value, unit))
+        }
+        Tree::Paren(inner) => plain(inner),
+        _ => None,
+    }
 }
 
 /// Where the word stands between two values: outside of brackets and texts.
@@ -210,10 +222,14 @@ mod tests {
 
     #[test]
     fn what_a_frame_has_is_said_as_it_is_written() {
+        let said = |given: &[&str]| {
+            let given: Vec<String> = given.iter().copied().map(String::from).collect();
+            words(&given, Moment { index: 1, of: 3 }, |name| name.starts_with('n'))
+        };
         let given = ["t = 0 to 3", "angle = 0deg until 360deg", "n = 1 to 4", "at = (0, 1)m to (1, 1)m", "t"];
-        let moment = Moment { index: 1, of: 3 };
-        let said = words(&given.map(String::from), moment, |name| name == "n");
-        assert_eq!(said, ["t = 1.5", "angle = 120deg", "n = 3", "at = mix((0, 1)m, (1, 1)m, 0.5)"]);
+        assert_eq!(said(&given), ["t = 1.5", "angle = 120deg", "n = 3", "at = mix((0, 1)m, (1, 1)m, 0.5)"]);
+        let signed = ["turn = -90deg to 60deg", "n = -4 until (-(1))", "near = -1 to 0.2", "nth = a to 4"];
+        assert_eq!(said(&signed), ["turn = -15deg", "n = -3", "near = 0", "nth = round(mix(a, 4, 0.5))"]);
     }
 
     #[test]

@@ -303,6 +303,12 @@ impl<'t> Cursor<'t> {
         Some(pieces.next().is_some_and(|(lexeme, range)| lexeme == Lexeme::Word && range.start == end))
     }
 
+    /// Whether a list of the entry is open at the word.
+    pub(super) fn in_list(&self) -> bool {
+        let begins = self.entry.first().map_or(0, |first| first.start);
+        self.open.iter().any(|open| *open >= begins && self.text.as_bytes()[*open] == b'[')
+    }
+
     /// Whether the word stands in the head of a function.
     pub(super) fn declares_function(&self) -> bool {
         self.piece(0) == "fn" && !(2..self.entry.len()).any(|index| self.piece(index) == "=")

@@ -1,9 +1,9 @@
 //! Things without a body, as far as they were typed: `sphere ball`, `file.post`.
 
-use super::BLANKS;
 use super::ast::{Broken, Entry, Name};
 use super::build::{Builder, Node, is_reserved};
 use super::errors::{self, statements};
+use super::{BLANKS, PLACED_WORDS};
 use crate::span::Span;
 
 impl Builder<'_> {
@@ -12,7 +12,8 @@ impl Builder<'_> {
     pub(super) fn thing_or_field(&self, word: &Name, value: &Node, span: Span, top: bool) -> Option<Entry> {
         let second = value.as_str().trim_ascii_end();
         let holds_things = self.declares.get() || self.grouped.get();
-        if top || !is_name(second) || is_reserved(&word.text) || !(holds_things || &word.text == "lens") {
+        let is_field = is_reserved(&word.text) || PLACED_WORDS.contains(&word.text.as_str());
+        if top || !is_name(second) || is_field || !(holds_things || &word.text == "lens") {
             return None;
         }
         let name = Name { text: second.into(), span: self.trimmed(value) };
@@ -24,7 +25,10 @@ impl Builder<'_> {
     }
 
     /// `file.post`, `file.post left`, `file.`: a thing of a part of a file, as far as it was written. Gives its name.
-    pub(super) fn bodiless_path(&self, first: &Name, end: usize) -> Option<Option<Name>> {
+    pub(super) fn bodiless_path(&self, first: &Name, end: usize, top: bool) -> Option<Option<Name>> {
+        if !(top || self.declares.get() || self.grouped.get()) {
+            return None;
+        }
         let rest = self.after(end);
         let path = leading(rest, |c| is_part(c) || c == '.');
         let whole = path.strip_suffix('.').unwrap_or(path);
@@ -38,10 +42,14 @@ impl Builder<'_> {
             return Some(None);
         }
         let behind = rest[path.len()..].trim_start_matches(BLANKS);
+        let start = end + rest.len() - behind.len();
+        if let Some((diagnostic, name)) = self.no_name(path.rsplit('.').next().unwrap_or(path), start) {
+            self.report(diagnostic);
+            return Some(name);
+        }
         let second = Some(leading(behind, is_part)).filter(|second| is_name(second)).unwrap_or("");
         let whole = first.span.to(self.at(end, end + path.len()));
         let path = format!("{}{path}", first.text);
-        let start = end + rest.len() - behind.len();
         let name = Name { text: second.into(), span: self.at(start, start + second.len()) };
         let more = behind[second.len()..].trim_start_matches(BLANKS);
         // `ball.radius = 2m`, `post.height: 1m`
@@ -54,6 +62,12 @@ impl Builder<'_> {
             return Some(None);
         }
         self.report(match second {
+            // `file.f(3)`, `file.post left > 2`
+            _ if !more.is_empty() && !more.starts_with(['\n', '}', ',', ';']) => {
+                let start = end + rest.len() - more.len();
+                let token = errors::first_token(more);
+                errors::unexpected_extra(token, self.at(start, start + token.len()))
+            }
             "" => errors::missing_body(&path, whole),
             _ => errors::missing_body(&format!("{path} {second}"), name.span),
         });

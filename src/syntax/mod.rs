@@ -69,6 +69,13 @@ pub const TYPE_WORDS: &[&str] = &[
     "area",
 ];
 
+/// Those of them whose values can have a range, but for lengths, behind which `in` is an inch.
+pub const RANGED_WORDS: &[&str] = &["number", "int", "angle", "power", "radiance", "temperature", "area"];
+
+/// The fields of whatever is placed that no word of the language names: in a body that holds things, two words of which
+/// the first is one of them are no thing. What they mean is not known here.
+pub const PLACED_WORDS: &[&str] = &["at", "place", "grain"];
+
 /// White space within a line, as the grammar has it. With the line end it is what Rust calls ASCII white space.
 const BLANKS: [char; 4] = [' ', '\t', '\r', '\u{c}'];
 

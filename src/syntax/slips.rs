@@ -269,9 +269,10 @@ impl<'t> Builder<'t> {
         if let Some(named) = self.named_otherwise(&name, &value, span).filter(|_| !is_reserved(&name.text)) {
             return named;
         }
-        if let Some(diagnostic) = self.no_name(&name.text, &value).filter(|_| !is_reserved(&name.text)) {
+        let no_name = self.no_name(&name.text, value.as_span().start());
+        if let Some((diagnostic, name)) = no_name.filter(|_| !is_reserved(&name.text)) {
             self.report(diagnostic);
-            return (Entry::Broken(Broken { name: None, span }), 0);
+            return (Entry::Broken(Broken { name, span }), 0);
         }
         if is_reserved(&name.text) && !field {
             self.report(statements::begins_nothing(&name.text, name.span));
@@ -302,23 +303,12 @@ impl<'t> Builder<'t> {
         (Entry::Broken(Broken { name: Some(name), span }), 0)
     }
 
-    /// `sphere ball = { … }`, `sphere "ball" { … }`: a thing whose name stands otherwise.
+    /// `sphere ball = { … }`: a thing whose body stands otherwise.
     fn named_otherwise(&self, kind: &Name, value: &Node<'t>, span: Span) -> Option<Deep<Entry>> {
         let mut inner = value.clone().into_inner();
         let (first, sign) = (inner.next()?, inner.next());
         let written = first.as_str().trim_ascii_end();
         let place = self.trimmed(&first);
-        if first.as_rule() == Rule::text && sign.is_none() {
-            let text = written.trim_matches('"');
-            let thing = self.after(value.as_span().end()).trim_start_matches(BLANKS).starts_with('{');
-            let inside = Span { start: place.start + 1, end: place.end - 1, ..place };
-            let name = Some(Name { text: text.into(), span: inside }).filter(|_| is_word(text));
-            if !thing {
-                return None;
-            }
-            self.report(errors::quoted_name(name.as_ref(), place));
-            return Some((Entry::Broken(Broken { name, span }), 0));
-        }
         let sign = sign.filter(|sign| sign.as_rule() == Rule::foreign_equals && is_word(written))?;
         let body = inner.next().filter(|body| body.as_rule() == Rule::bare_body)?.into_inner().next()?;
         let name = Name { text: written.into(), span: place };
@@ -333,16 +323,30 @@ impl<'t> Builder<'t> {
         })
     }
 
-    /// `sphere 2nd { … }`, `sphere my-ball { … }`: what stands as the name of a thing and cannot be one.
-    fn no_name(&self, kind: &str, value: &Node) -> Option<Diagnostic> {
-        let start = value.as_span().start();
+    /// `sphere "ball" { … }`, `sphere 2nd { … }`, `sphere my-ball { … }`: what stands as the name of a thing and cannot
+    /// be one, and the name that is in it.
+    pub(super) fn no_name(&self, kind: &str, start: usize) -> Option<(Diagnostic, Option<Name>)> {
         let text = self.after(start);
+        if let Some(quoted) = text.strip_prefix('"') {
+            let mut escaped = false;
+            let end = quoted.find(|c| {
+                let ends = c == '\n' || c == '"' && !escaped;
+                escaped = c == '\\' && !escaped;
+                ends
+            })?;
+            let (inside, behind) = quoted.split_at(end);
+            let thing = behind.strip_prefix('"')?.trim_start_matches(BLANKS).starts_with('{');
+            let name = Name { text: inside.into(), span: self.at(start + 1, start + 1 + end) };
+            let name = Some(name).filter(|_| is_word(inside));
+            let whole = self.at(start, start + end + 2);
+            return thing.then(|| (errors::quoted_name(name.as_ref(), whole), name));
+        }
         let end = text.find(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '-'))).unwrap_or(text.len());
         let name = &text[..end];
         let thing = text[end..].trim_start_matches(BLANKS).starts_with('{');
         let apart = name.starts_with(|c: char| c.is_ascii_digit()) || name.contains('-');
         let sound = apart && !name.starts_with('-') && !name.ends_with('-');
-        (thing && sound).then(|| errors::no_name(kind, name, self.at(start, start + end)))
+        (thing && sound).then(|| (errors::no_name(kind, name, self.at(start, start + end)), None))
     }
 
     /// Whether what was taken for a value is the name of a field, with `:` behind it.
@@ -366,7 +370,7 @@ impl<'t> Builder<'t> {
         let word_end = word.as_span().end();
         if self.after(word_end).starts_with('.')
             && !is_reserved(&name.text)
-            && let Some(name) = self.bodiless_path(&name, word_end)
+            && let Some(name) = self.bodiless_path(&name, word_end, top)
         {
             return Entry::Broken(Broken { name, span });
         }

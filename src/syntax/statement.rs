@@ -4,7 +4,7 @@
 use super::ast::{Body, Broken, Entry, Expr, ExprKind, Name, Parameter, StatementKind, TypeName};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements as slips};
-use super::{TYPE_WORDS, branches, literal, value};
+use super::{RANGED_WORDS, TYPE_WORDS, branches, literal, value};
 use crate::span::Span;
 use pest::iterators::Pairs;
 use smol_str::SmolStr;
@@ -169,9 +169,15 @@ fn param<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> D
 
 /// `param n: int = 5 in`: whether the `in` at the end is the word of a range, and no inch.
 fn begins_range(default: &Node, ty: &TypeName) -> bool {
-    let is_length = matches!(ty, TypeName::Named(name) if name.text == "length");
-    let before = default.as_str().trim_ascii_end().strip_suffix("in");
-    !is_length && before.is_some_and(|before| before.ends_with(super::BLANKS))
+    let TypeName::Named(ty) = ty else { return false };
+    let Some(before) = default.as_str().trim_ascii_end().strip_suffix("in") else { return false };
+    let mut parts = default.clone().into_inner().rev();
+    // A quotient of lengths is a number, and a product of them is an area.
+    let of_lengths = parts.nth(1).is_some_and(|sign| match sign.as_str().trim_ascii_end() {
+        "/" => true,
+        sign => sign == "*" && ty.text == "area",
+    });
+    RANGED_WORDS.contains(&ty.text.as_str()) && before.ends_with(super::BLANKS) && !of_lengths
 }
 
 /// `:=` where `=` should stand.

@@ -50,8 +50,8 @@ impl List<'_> {
             // No function takes a thing that is made on the spot.
             let takes = |category| match category {
                 Category::Block => false,
-                // A material has a word of its own.
-                Category::Material => typing.cursor.piece(0) != "let",
+                // A material has a word of its own; a list of them has none.
+                Category::Material => typing.cursor.piece(0) != "let" || typing.cursor.in_list(),
                 _ => true,
             };
             let made = KINDS.iter().filter(|kind| takes(kind.category) && call.is_none());
