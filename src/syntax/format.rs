@@ -116,7 +116,8 @@ fn broken(file: &File, text: &str, slips: &[Diagnostic]) -> Vec<Range<usize>> {
         // How lines are indented against each other may decide how they are read.
         if text[range.clone()].contains('\n') {
             let before = text[..start].trim_end_matches(BLANKS);
-            range.start = if before.is_empty() || before.ends_with('\n') { before.len() } else { start };
+            let is_first = before.len() <= cut::after_marks(text);
+            range.start = if is_first || before.ends_with('\n') { before.len() } else { start };
         }
         match ranges.last_mut() {
             Some(before) if range.start < before.end => before.end = before.end.max(range.end),
