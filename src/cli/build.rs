@@ -70,10 +70,17 @@ impl<'a> Context<'a> {
         Ok(Context { arguments, threads, terminal, interrupt })
     }
 
+    /// Says what is no error, to who wants to hear it.
+    pub fn say(&self, line: &str) {
+        if !self.arguments.quiet {
+            self.terminal.line(line);
+        }
+    }
+
     /// Where nothing is kept, a request to keep what there is cannot be heeded, and is no reason to stop.
     pub fn refuse_request(&self) {
         if self.interrupt.is_requested() {
-            self.terminal.line(
+            self.say(
                 "SIGUSR1 asks to keep the samples, and nothing says where: `--checkpoint` does; the picture goes on",
             );
         }
@@ -229,7 +236,7 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
     };
     let window = window(scene, arguments.crop)?;
     let wait = arguments.keeping.wait.unwrap_or_default();
-    let staged = patiently(wait, terminal, || stage(context, &job.targets, scene, window))?;
+    let staged = patiently(wait, context, || stage(context, &job.targets, scene, window))?;
     let Some(from) = compiled.provenance(&loaded.sources) else { return Ok(Exit::Diagnostics) };
     let plan = Plan::new(arguments, from, window, &job.targets)?;
     let mut traced = context.threads.install(|| trace(context, &job.scene, plan, None))?;

@@ -1,12 +1,13 @@
 //! Files beside a place, to be written and then moved there.
 //!
-//! They are always called the same, and are of one process at a time: of the one that holds the file's lock while the name is
+//! Their names are known before, and each is of one process at a time: of the one that holds the file's lock while the name is
 //! that of this file. What a process has left that was killed is nobody's, and goes when the next one comes. Nobody removes or
-//! moves a file of that name but under its lock, and only after seeing that the name is still of it: between making a file and
-//! locking it others may come, who take it for one that was left.
+//! moves a file of such a name but under its lock, and only after seeing that the name is still of it: between making a file and
+//! locking it others may come, who take it for one that was left. Where several processes may write the same, their names have
+//! numbers, which are of nobody for whom another one is in the way.
 //!
-//! The disks of some farms know no locks. There a file gets a name that no other has, and what was left stays. So does what
-//! several processes write at once, where that is no error.
+//! The disks of some farms know no locks. There a file gets a name that no other has, and what was left stays. So it does where
+//! another program writes a file: some systems let nobody else write what is locked.
 //!
 //! What is left must not stand in the way of the next one, so a file can always be written by its owner while it is beside its
 //! place, whatever the permissions are that it gets when it is moved there.
@@ -15,6 +16,8 @@ use super::interrupt::Interrupt;
 use std::fs::{self, File, OpenOptions, Permissions, TryLockError};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::Duration;
 use tempfile::{Builder, NamedTempFile};
 
 /// How the names of files end that are being written.
@@ -26,27 +29,69 @@ const PREFIX: &str = ".rtc-";
 /// How often others may come between before it is said that they are at it.
 const ATTEMPTS: u32 = 16;
 
+/// How many processes write the same at once before names are chosen for them.
+const MOST: u32 = 8;
+
+/// For at least so long a process has what another has left, which it removes.
+const MOMENT: Duration = Duration::from_millis(2);
+
 /// The file beside a place of this name.
 pub fn path(folder: &Path, name: &str) -> PathBuf {
     folder.join(format!("{PREFIX}{name}{SUFFIX}"))
 }
 
-/// Makes a file in a folder for what is to be called so, also while another process has one for the same. Its owner may write it,
-/// and besides it has these permissions, or those that the umask leaves. It is that of [`always`], so that what a process has
-/// left that was killed goes when the next one writes the same; or has a name that no other has, where that one cannot be had.
+/// Makes a file in a folder for what is to be called so, also while others have one for the same, and in nobody's way. Its owner
+/// may write it, and besides it has these permissions, or those that the umask leaves. It is the first of `.rtc-NAME.1.tmp` and
+/// so on that can be had, or else has a name that no other has.
 pub fn any(
     folder: &Path,
     name: &str,
     permissions: Option<Permissions>,
     interrupt: &Interrupt,
 ) -> io::Result<NamedTempFile> {
-    always(folder, name, permissions.clone(), interrupt)
-        .or_else(|_| create(interrupt, || builder(permissions).prefix(PREFIX).tempfile_in(folder)))
+    remove_all_left(folder, name);
+    let had = numbered(name).find_map(|name| take_name(folder, &name, permissions.clone(), interrupt).ok());
+    had.map_or_else(|| lone(folder, permissions, interrupt), Ok)
+}
+
+/// Makes a file whose name no other has, for another program that writes it. Nobody holds its lock.
+pub fn lone(
+    folder: &Path,
+    permissions: Option<Permissions>,
+    interrupt: &Interrupt,
+) -> io::Result<NamedTempFile> {
+    create(interrupt, || builder(permissions).prefix(PREFIX).tempfile_in(folder))
 }
 
 /// Makes the file `.rtc-NAME.tmp` in a folder and takes it for this process. While it is of another one the error is
 /// [`ErrorKind::ResourceBusy`], and where there is something that is no plain file [`ErrorKind::InvalidInput`].
 pub fn always(
+    folder: &Path,
+    name: &str,
+    permissions: Option<Permissions>,
+    interrupt: &Interrupt,
+) -> io::Result<NamedTempFile> {
+    remove_all_left(folder, name);
+    match take_name(folder, name, permissions.clone(), interrupt) {
+        Err(error) if error.kind() == ErrorKind::ResourceBusy => {
+            thread::sleep(MOMENT);
+            take_name(folder, name, permissions, interrupt)
+        }
+        taken => taken,
+    }
+}
+
+/// The names of what several processes write.
+fn numbered(name: &str) -> impl Iterator<Item = String> {
+    (1..=MOST).map(move |number| format!("{name}.{number}"))
+}
+
+/// Removes all that was left for what is called so, by whichever kind of process, as far as it may be.
+fn remove_all_left(folder: &Path, name: &str) {
+    numbered(name).chain([name.to_string()]).for_each(|name| drop(remove_left(&path(folder, &name))));
+}
+
+fn take_name(
     folder: &Path,
     name: &str,
     permissions: Option<Permissions>,
@@ -178,7 +223,6 @@ fn is_at(file: &File, path: &Path) -> bool {
 mod tests {
     use super::*;
     use std::sync::atomic::{AtomicU32, Ordering::SeqCst};
-    use std::thread;
 
     fn claimed(folder: &Path) -> io::Result<NamedTempFile> {
         always(folder, "a.png", None, &Interrupt::default())
@@ -200,17 +244,39 @@ mod tests {
     fn a_name_that_another_has_is_no_reason_to_stop_and_what_was_left_goes() {
         let folder = tempfile::tempdir().unwrap();
         let any = |name: &str| super::any(folder.path(), name, None, &Interrupt::default()).unwrap();
-        let path = folder.path().join(".rtc-a.png.tmp");
-        fs::write(&path, "of one that was killed").unwrap();
+        let names = || {
+            let names = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name());
+            let mut names: Vec<String> = names.map(|name| name.into_string().unwrap()).collect();
+            names.sort();
+            names
+        };
+        let leave = |number: &str| {
+            fs::write(folder.path().join(format!(".rtc-a.png{number}.tmp")), "of one that was killed")
+                .unwrap();
+        };
+        ["", ".1", ".2", ".7"].into_iter().for_each(leave);
         let (first, second) = (any("a.png"), any("a.png"));
-        assert_eq!((first.path(), fs::read(&path).unwrap()), (path.as_path(), vec![]));
-        assert_ne!(second.path(), path);
+        assert_eq!(names(), [".rtc-a.png.1.tmp", ".rtc-a.png.2.tmp"]);
+        assert!(fs::read(first.path()).unwrap().is_empty());
+        // Neither of the two kinds is in the way of the other, and each removes what either has left.
+        ["", ".7"].into_iter().for_each(leave);
+        let alone = claimed(folder.path()).unwrap();
+        assert_eq!(names(), [".rtc-a.png.1.tmp", ".rtc-a.png.2.tmp", ".rtc-a.png.tmp"]);
+        let many: Vec<NamedTempFile> = (0..MOST).map(|_| any("a.png")).collect();
+        assert_eq!(names().len(), 3 + many.len());
         // With what stands around it, it is too long for a name.
-        drop((first, second, any(&"n".repeat(250))));
-        fs::create_dir(&path).unwrap();
+        drop((first, second, alone, many, any(&"n".repeat(250))));
+        fs::create_dir(folder.path().join(".rtc-a.png.1.tmp")).unwrap();
         drop(any("a.png"));
-        let left = fs::read_dir(folder.path()).unwrap().count();
-        assert_eq!(left, 1, "the folder alone, which is nobody's to remove");
+        assert_eq!(names(), [".rtc-a.png.1.tmp"], "the folder alone, which is nobody's to remove");
+    }
+
+    #[test]
+    fn what_is_lent_has_a_name_of_its_own_and_may_be_locked() {
+        let folder = tempfile::tempdir().unwrap();
+        let [first, second] = [(); 2].map(|()| lone(folder.path(), None, &Interrupt::default()).unwrap());
+        assert_ne!(first.path(), second.path());
+        lock(&File::open(first.path()).unwrap()).expect("nobody has it");
     }
 
     #[test]

@@ -1,11 +1,11 @@
 //! Keeps the samples of a picture in the making, and goes on from them.
 
 use super::args::{Build, Every, Keeping, Resume};
+use super::build::Context;
 use super::interrupt::Interrupt;
 use super::target::{Aside, Target};
-use super::terminal::Terminal;
 use super::{Problem, build, input};
-use rt_lang::output::{Facts, MOST_PIXELS};
+use rt_lang::output::{Facts, MOST_PIXELS, is_exr};
 use rt_lang::render::making::Making;
 use rt_lang::saved::{self, CHANNELS, EARLY_CHANNELS, Head, Saved, Subject};
 use std::io::Read;
@@ -69,7 +69,7 @@ pub fn refuse_loose_files(arguments: &Build) -> Result<(), Problem> {
     let is_loose = |scene: &&PathBuf| {
         !input::is_standard(scene)
             && scene.extension().is_none_or(|extension| extension != "rt")
-            && (of_one || !scene.exists())
+            && (of_one || !scene.exists() || begins_as_exr(scene))
     };
     let Some(file) = scenes.iter().find(is_loose).filter(|_| scenes.len() > 1) else { return Ok(()) };
     let file = file.display();
@@ -119,13 +119,24 @@ pub fn beside(targets: &[Target]) -> Result<PathBuf, Problem> {
 pub struct Account {
     from: Option<Amount>,
     to: Option<Amount>,
+    /// Whether there are more that could not be kept.
+    lacks: bool,
 }
 
 /// What a file of samples says that it is of; none where it is no such file.
 pub fn head(path: &Path) -> Option<Head> {
-    let mut head = vec![];
-    input::open_plain(path).and_then(|file| file.take(HEAD).read_to_end(&mut head)).ok()?;
-    Head::decode(&head).ok()
+    Head::decode(&beginning(path)?).ok()
+}
+
+fn begins_as_exr(path: &Path) -> bool {
+    beginning(path).is_some_and(|bytes| is_exr(&bytes))
+}
+
+/// The first bytes of a file, if it is one and can be read.
+fn beginning(path: &Path) -> Option<Vec<u8>> {
+    let mut bytes = vec![];
+    input::open_plain(path).and_then(|file| file.take(HEAD).read_to_end(&mut bytes)).ok()?;
+    Some(bytes)
 }
 
 /// Samples in a file.
@@ -152,18 +163,34 @@ impl Account {
         Some(format!("went on from {} in `{}`", from.samples, from.file.display()))
     }
 
+    /// What is kept, in words.
+    fn kept(&self) -> Option<String> {
+        let kept = self.to.as_ref().map(|to| format!("kept {} in `{}`", to.samples, to.file.display()));
+        self.with_lack(kept)
+    }
+
     /// A line about both.
     pub fn line(&self) -> Option<String> {
-        let kept = self.to.as_ref().map(|to| {
-            let there = self.from.as_ref().filter(|from| from.file == to.file);
-            match there {
-                Some(from) if from.mean == to.mean => "where nothing was left to trace".to_string(),
-                Some(_) => format!("kept {} there", to.samples),
-                None => format!("kept {} in `{}`", to.samples, to.file.display()),
-            }
-        });
+        let there = self.to.as_ref().zip(self.from.as_ref()).filter(|(to, from)| from.file == to.file);
+        let kept = match there {
+            Some((to, from)) if from.mean == to.mean => match self.lacks {
+                true => Some("could keep no more".to_string()),
+                false => Some("where nothing was left to trace".to_string()),
+            },
+            Some((to, _)) => self.with_lack(Some(format!("kept {} there", to.samples))),
+            None => self.kept(),
+        };
         let parts: Vec<String> = self.went_on().into_iter().chain(kept).collect();
         (!parts.is_empty()).then(|| parts.join(", "))
+    }
+
+    /// What is said of what is kept, and that it is not all.
+    fn with_lack(&self, kept: Option<String>) -> Option<String> {
+        match (kept, self.lacks) {
+            (Some(kept), true) => Some(format!("{kept}, could keep no more")),
+            (None, true) => Some("could keep none".to_string()),
+            (kept, false) => kept,
+        }
     }
 }
 
@@ -174,8 +201,7 @@ pub struct Keeper<'a> {
     subject: &'a Subject,
     /// How the picture comes about, as far as that is known before.
     facts: &'a Facts,
-    interrupt: &'a Interrupt,
-    terminal: Terminal,
+    context: &'a Context<'a>,
     /// Keeps others from the file meanwhile, who would replace what is kept by less.
     held: Option<Aside>,
     /// When they were kept last, and how many samples a pixel those were.
@@ -191,14 +217,12 @@ impl<'a> Keeper<'a> {
     /// One that keeps what depends on this.
     pub fn new(
         places: Places,
-        every: Every,
         (subject, facts): (&'a Subject, &'a Facts),
-        interrupt: &'a Interrupt,
-        terminal: Terminal,
+        context: &'a Context<'a>,
     ) -> Keeper<'a> {
-        let last = (Instant::now(), 0.0);
+        let (every, last) = (context.arguments.keeping.every(), (Instant::now(), 0.0));
         let (held, cost, account, complained) = (None, Duration::ZERO, Account::default(), false);
-        Keeper { places, every, subject, facts, interrupt, terminal, held, last, cost, account, complained }
+        Keeper { places, every, subject, facts, context, held, last, cost, account, complained }
     }
 
     /// The picture to go on with; none where there is nothing to go on from. What differs is an error, in what `refuses` says
@@ -208,8 +232,8 @@ impl<'a> Keeper<'a> {
         &mut self,
         refuses: impl FnOnce(&Making) -> Option<String>,
     ) -> Result<Option<Making>, Problem> {
-        self.held = Some(Aside::hold(&self.places.to, self.interrupt)?);
-        drop(Aside::always_beside(&self.places.to, self.interrupt)?);
+        self.held = Some(Aside::hold(&self.places.to, self.context.interrupt)?);
+        drop(Aside::always_beside(&self.places.to, self.context.interrupt)?);
         let Some((path, must_be)) = &self.places.from else { return Ok(None) };
         if !must_be && !input::is_there(path)? {
             return Ok(None);
@@ -233,7 +257,7 @@ impl<'a> Keeper<'a> {
         })?;
         match self.subject.refuses(&saved.subject, CALLED).or_else(|| refuses(&saved.making)) {
             Some(why) if self.places.yields => {
-                self.terminal.line(&format!("`{}` is not gone on from: {why}", path.display()));
+                self.context.say(&format!("`{}` is not gone on from: {why}", path.display()));
                 Ok(None)
             }
             Some(why) => Err(cannot(
@@ -257,7 +281,7 @@ impl<'a> Keeper<'a> {
     pub fn consider(&mut self, making: &Making) {
         let since = (self.last.0.elapsed(), making.mean_samples() - self.last.1);
         // What was asked for is done, whether it was due or not.
-        if self.interrupt.is_requested() || is_due(self.every, since, self.cost) {
+        if self.context.interrupt.is_requested() || is_due(self.every, since, self.cost) {
             self.keep(making);
         }
     }
@@ -268,10 +292,12 @@ impl<'a> Keeper<'a> {
         let kept = self.write(making);
         self.cost = start.elapsed();
         self.last = (Instant::now(), making.mean_samples());
+        self.account.lacks = kept.is_err();
         match kept {
             Ok(()) => self.account.to = Some(Amount::of(making, &self.places.to)),
             Err(problem) if !self.complained => {
-                self.terminal.problem(&problem.help("the samples are not kept; the picture goes on"));
+                let problem = problem.help("the samples are not kept; the picture goes on");
+                self.context.terminal.problem(&problem);
                 self.complained = true;
             }
             Err(_) => {}
@@ -288,7 +314,7 @@ impl<'a> Keeper<'a> {
 
     /// What is kept by now, in words.
     pub fn kept(&self) -> Option<String> {
-        self.account.to.as_ref().map(|to| format!("kept {} in `{}`", to.samples, to.file.display()))
+        self.account.kept()
     }
 
     /// What was there before, and what is kept now.
@@ -301,7 +327,7 @@ impl<'a> Keeper<'a> {
         let facts = saved::judged(self.facts.clone(), making.film(), making.samples());
         let bytes = self.subject.encode(making, &facts);
         let bytes = bytes.map_err(|why| Problem::new(format!("cannot write `{}`: {why}", to.display())))?;
-        write(to, &bytes, self.interrupt)
+        write(to, &bytes, self.context.interrupt)
     }
 }
 
@@ -336,5 +362,37 @@ mod tests {
         assert!(
             due(ten, 0, 10.0, 0) && !due(ten, 900, 9.0, 0) && !due(ten, 19, 10.0, 1) && due(ten, 20, 10.0, 1)
         );
+    }
+
+    #[test]
+    fn the_account_never_says_that_what_could_not_be_kept_is() {
+        let amount = |mean: u32, file: &str| {
+            Some(Amount { samples: format!("{mean} samples"), mean: mean.into(), file: file.into() })
+        };
+        let told = |from, to, lacks| {
+            let account = Account { from, to, lacks };
+            [account.line(), account.kept()].map(Option::unwrap_or_default)
+        };
+        let went_on = "went on from 4 samples in `a`";
+        for (from, to, line, kept) in [
+            (None, None, "could keep none", "could keep none"),
+            (None, amount(7, "a"), "kept 7 samples in `a`, could keep no more", ""),
+            (amount(4, "a"), None, &format!("{went_on}, could keep none"), "could keep none"),
+            (
+                amount(4, "a"),
+                amount(4, "a"),
+                &format!("{went_on}, could keep no more"),
+                "kept 4 samples in `a`, could keep no more",
+            ),
+            (
+                amount(4, "a"),
+                amount(7, "a"),
+                &format!("{went_on}, kept 7 samples there, could keep no more"),
+                "kept 7 samples in `a`, could keep no more",
+            ),
+        ] {
+            let kept = if kept.is_empty() { line } else { kept };
+            assert_eq!(told(from, to, true), [line, kept]);
+        }
     }
 }

@@ -1,9 +1,9 @@
 //! Where pictures and texts go. A file is written beside its place and moved there when it is whole; until then
 //! whatever was there before stays.
 
+use super::build::Context;
 use super::input::is_standard;
 use super::interrupt::Interrupt;
-use super::terminal::Terminal;
 use super::{Problem, claim, plain};
 use rt_lang::output::Format;
 use rt_lang::report::printable_lines;
@@ -93,42 +93,61 @@ pub struct Aside {
     interrupt: Interrupt,
 }
 
+/// Who may write a file beside its place.
+#[derive(Clone, Copy)]
+enum Claim {
+    /// Each process one of its own.
+    Any,
+    /// Another program, for this process.
+    Lent,
+    /// This process alone, under a name with this behind it.
+    Always(&'static str),
+}
+
 impl Aside {
-    /// Makes the file beside its place, which shows that it can be written.
+    /// Makes the file beside its place, which shows that it can be written. Others may do the same at once.
     pub fn beside(path: &Path, interrupt: &Interrupt) -> Result<Aside, Problem> {
-        Aside::make(path, None, interrupt)
+        Aside::make(path, Claim::Any, interrupt)
+    }
+
+    /// The same for another program that writes it: see [`Aside::lend`].
+    pub fn to_lend(path: &Path, interrupt: &Interrupt) -> Result<Aside, Problem> {
+        Aside::make(path, Claim::Lent, interrupt)
     }
 
     /// The same for a place that one process writes again and again: the file has always the same name, so that what is left
     /// of one that was killed is not left for ever. While another process writes there it is an error.
     pub fn always_beside(path: &Path, interrupt: &Interrupt) -> Result<Aside, Problem> {
-        Aside::make(path, Some(""), interrupt)
+        Aside::make(path, Claim::Always(""), interrupt)
     }
 
     /// Keeps a place for this process as long as this lives, also between one writing and the next. Nothing is written to it.
     pub fn hold(path: &Path, interrupt: &Interrupt) -> Result<Aside, Problem> {
-        Aside::make(path, Some(".lock"), interrupt)
+        Aside::make(path, Claim::Always(".lock"), interrupt)
     }
 
-    /// What is always of one name has something behind it.
-    fn make(path: &Path, always: Option<&str>, interrupt: &Interrupt) -> Result<Aside, Problem> {
+    fn make(path: &Path, claim: Claim, interrupt: &Interrupt) -> Result<Aside, Problem> {
         let permissions = fs::metadata(path).ok().map(|existing| existing.permissions());
         let place = place(path)?;
         let folder = folder(&place);
         // Of the place, so that whoever comes by another link finds the same.
         let name = place.file_name().unwrap_or_default().to_string_lossy();
-        let made = match always {
-            Some(suffix) => claim::always(folder, &format!("{name}{suffix}"), permissions.clone(), interrupt),
-            None => claim::any(folder, &name, permissions.clone(), interrupt),
-        };
-        let file = made.map_err(|error| {
-            let problem = cannot_write(&shown(path), &error);
-            let beside = claim::path(folder, &format!("{name}{}", always.unwrap_or_default()));
-            match error.kind() == ErrorKind::PermissionDenied && always.is_some() && beside.exists() {
-                true => problem.help(format!("`{}` was left by another user: remove it", beside.display())),
-                false => problem,
+        let refused = |error| cannot_write(&shown(path), &error);
+        let file = match claim {
+            Claim::Any => claim::any(folder, &name, permissions.clone(), interrupt).map_err(refused)?,
+            Claim::Lent => claim::lone(folder, permissions.clone(), interrupt).map_err(refused)?,
+            Claim::Always(suffix) => {
+                let name = format!("{name}{suffix}");
+                claim::always(folder, &name, permissions.clone(), interrupt).map_err(|error| {
+                    let left = claim::path(folder, &name);
+                    match error.kind() == ErrorKind::PermissionDenied && left.exists() {
+                        true => refused(error)
+                            .help(format!("`{}` was left by another user: remove it", left.display())),
+                        false => refused(error),
+                    }
+                })?
             }
-        })?;
+        };
         Ok(Aside { path: path.into(), file: Some((file, place)), permissions, interrupt: interrupt.clone() })
     }
 
@@ -145,14 +164,9 @@ impl Aside {
         self.file.as_ref().map_or(Err(io::ErrorKind::NotFound.into()), |(file, _)| file.as_file().try_clone())
     }
 
-    /// The name of the file, for another program that writes it; then comes [`Aside::sync`].
+    /// The name of the file, if it is one [`Aside::to_lend`], for another program that writes it; then comes [`Aside::sync`].
     pub fn lend(&self) -> PathBuf {
-        self.file.as_ref().map_or_else(PathBuf::new, |(file, _)| {
-            // There nobody else writes what is locked, and nobody takes away what is open.
-            #[cfg(windows)]
-            let _ = file.as_file().unlock();
-            file.path().to_path_buf()
-        })
+        self.file.as_ref().map_or_else(PathBuf::new, |(file, _)| file.path().to_path_buf())
     }
 
     /// Waits until what was written is on the disk.
@@ -266,7 +280,7 @@ const PERIOD: Duration = Duration::from_millis(500);
 /// Tries again for so long while another process is at it, and says so once.
 pub fn patiently<T>(
     wait: Duration,
-    terminal: Terminal,
+    context: &Context,
     mut attempt: impl FnMut() -> Result<T, Problem>,
 ) -> Result<T, Problem> {
     let (start, mut said) = (Instant::now(), false);
@@ -274,7 +288,7 @@ pub fn patiently<T>(
         match attempt() {
             Err(problem) if problem.busy && start.elapsed() < wait => {
                 if !std::mem::replace(&mut said, true) {
-                    terminal.line(&format!("{}: it is waited for", problem.message));
+                    context.say(&format!("{}: it is waited for", problem.message));
                 }
                 std::thread::sleep(PERIOD);
             }

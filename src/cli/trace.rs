@@ -206,10 +206,7 @@ pub fn trace(
         context.interrupt.wait()
     };
     let aovs = &context.arguments.aov;
-    let every = context.arguments.keeping.every();
-    let mut keeper = places.map(|places| {
-        Keeper::new(places, every, (&tracing.subject, &tracing.facts), context.interrupt, context.terminal)
-    });
+    let mut keeper = places.map(|places| Keeper::new(places, (&tracing.subject, &tracing.facts), context));
     let kept = match &mut keeper {
         Some(keeper) => keeper.resume(|kept| {
             let lacks_halves = || denoises.then(|| denoise::refuses(kept)).flatten();

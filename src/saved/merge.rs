@@ -4,6 +4,7 @@ use super::{Head, Refused, Saved, Share, Subject, refused};
 use crate::output::Facts;
 use crate::render::Film;
 use crate::scene::{Tonemap, identity::difference};
+use std::collections::BTreeSet;
 
 /// A picture of which some shares are there.
 pub struct Merging {
@@ -77,7 +78,7 @@ impl Merging {
 }
 
 /// In which order shares are to be put together, by what the heads of their files say, so that those are first of which most are
-/// there: then it is the odd ones that do not go with the others.
+/// there, finished ones above all, and each once: then it is the odd ones that do not go with the others.
 ///
 /// # Errors
 ///
@@ -95,19 +96,35 @@ pub fn most_first(heads: &[Option<Head>]) -> Result<Vec<usize>, [usize; 2]> {
             None => groups.push(vec![at]),
         }
     }
+    let weight = |group: &Vec<usize>| {
+        let members = group.iter().filter_map(|at| heads[*at].as_ref());
+        let distinct = |indices: BTreeSet<u32>| indices.len();
+        let index = |head: &Head| head.subject.share.map(|share| share.index);
+        let finished = members.clone().filter(|head| head.is_finished()).filter_map(index);
+        (distinct(finished.collect()), distinct(members.filter_map(index).collect()))
+    };
+    let mut groups: Vec<_> = groups.into_iter().map(|group| (weight(&group), group)).collect();
     // Of as many the first ones stay first.
-    groups.sort_by_key(|group| std::cmp::Reverse(group.len()));
+    groups.sort_by_key(|(weight, _)| std::cmp::Reverse(*weight));
     match groups.as_slice() {
-        [one, other, ..] if one.len() == other.len() => Err([one[0], other[0]]),
+        [(one, first), (other, next), ..] if one == other => Err([first[0], next[0]]),
         _ => {
-            let first = groups.into_iter().next().unwrap_or_default();
-            let rest: Vec<usize> = (0..heads.len()).filter(|at| !first.contains(at)).collect();
-            Ok([first, rest].concat())
+            let mut order = groups.into_iter().next().map(|(_, first)| first).unwrap_or_default();
+            let mut is_first = vec![false; heads.len()];
+            order.iter().for_each(|at| is_first[*at] = true);
+            order.extend((0..heads.len()).filter(|at| !is_first[*at]));
+            Ok(order)
         }
     }
 }
 
 impl Head {
+    /// Whether it says that it is a share that has all its samples.
+    fn is_finished(&self) -> bool {
+        let wanted = self.subject.share.map(|share| share.range().len() as u32);
+        wanted.is_some_and(|wanted| self.facts.samples == Some([wanted; 2]))
+    }
+
     fn parts(&self) -> Parts<'_> {
         (&self.subject, &self.facts, self.scale)
     }

@@ -319,28 +319,41 @@ fn what_does_not_go_together_is_named() {
 
 #[test]
 fn those_of_which_most_are_there_come_first() {
-    let head = |seed: &str, share: Option<Share>| {
+    let head = |seed: &str, share: Option<Share>, finished: bool| {
         let value = |name: &str| {
             let own = identity();
             let value = own.entries().find(|(known, _)| *known == name).map(|(_, value)| value.to_string());
             if name == "seed" { Some(seed.to_string()) } else { value }
         };
+        let samples = share.map_or(5, |share| share.range().len() as u32);
         let mut saved = saved(share, 0..4, 5);
+        saved.facts.samples = finished.then_some([samples; 2]);
         saved.subject.identity = Identity::from_values(value).expect("every name has a value");
         Head::decode(&bytes_of(&saved)).ok()
     };
-    let heads = |seeds: &str| -> Vec<Option<Head>> {
-        let head = |(at, seed): (usize, char)| match seed {
+    // The picture, the number of the share, and whether that is finished.
+    let named = |files: &[(char, u32, bool)]| -> Vec<Option<Head>> {
+        let head = |(seed, index, finished): &(char, u32, bool)| match seed {
             '-' => None,
-            'c' => head("1", None),
-            _ => head(&seed.to_string(), Some(share(at as u32 % 4 + 1))),
+            'c' => head("1", None, *finished),
+            _ => head(&seed.to_string(), Some(share(*index)), *finished),
         };
-        seeds.chars().enumerate().map(head).collect()
+        files.iter().map(head).collect()
+    };
+    let heads = |seeds: &str| {
+        let file = |(at, seed): (usize, char)| (seed, at as u32 % 4 + 1, true);
+        named(&seeds.chars().enumerate().map(file).collect::<Vec<_>>())
     };
     assert_eq!(most_first(&heads("7111")), Ok(vec![1, 2, 3, 0]));
     assert_eq!(most_first(&heads("-c71-1")), Ok(vec![3, 5, 0, 1, 2, 4]));
     assert_eq!(most_first(&heads("71")), Err([0, 1]));
     assert_eq!(most_first(&heads("2711-7")), Err([1, 2]));
+    // A share that is there again is one, and one that is finished counts for more than those that are not.
+    let again = [('7', 1, true), ('7', 1, true), ('7', 1, true), ('1', 1, true), ('1', 2, true)];
+    assert_eq!(most_first(&named(&again)), Ok(vec![3, 4, 0, 1, 2]));
+    let unfinished = [('7', 1, false), ('7', 2, false), ('1', 3, true)];
+    assert_eq!(most_first(&named(&unfinished)), Ok(vec![2, 0, 1]));
+    assert_eq!(most_first(&named(&[('7', 1, false), ('1', 2, false), ('1', 3, false)])), Ok(vec![1, 2, 0]));
     assert_eq!(
         (most_first(&heads("1")), most_first(&heads("-")), most_first(&[])),
         (Ok(vec![0]), Ok(vec![0]), Ok(vec![]))

@@ -2,8 +2,8 @@
 
 use super::{Desk, assert_same};
 use std::fs;
-use std::io::{BufRead, BufReader};
-use std::process::{Command, Stdio};
+use std::io::{BufRead, BufReader, Read};
+use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// A scene in which paths take a while.
@@ -78,6 +78,9 @@ fn shares_put_together_are_the_picture_of_one_machine() {
         .expect(0, &["`foreign.exr` does not go with", "it is left out", "7 samples", "of 2 shares"]);
     desk.run("merge --partial foreign.exr part1.exr -o no.exr")
         .expect(2, &["`foreign.exr` and `part1.exr` are shares of different pictures"]);
+    // Given again and again it is one share.
+    desk.run("merge --partial part1.exr part3.exr foreign.exr foreign.exr foreign.exr -o look.png")
+        .expect(0, &["`foreign.exr` does not go with", "7 samples", "of 2 shares"]);
     desk.run("merge one.exr -o no.exr")
         .expect(2, &["`one.exr` is a picture alone", "have `--partial` leave it out"]);
     desk.run("merge room.rt -o no.exr").expect(
@@ -263,7 +266,11 @@ fn what_was_kept_goes_on_to_the_same_bytes() {
         let helped = format!("`{flag}=kept`");
         build(&desk, &format!("{flag} kept -o a.exr")).expect(2, &[&said, &helped]);
         build(&desk, &format!("{flag} kept")).expect(2, &[&said, &helped]);
+        // Also where there is such a file, which is no scene.
+        let (said, helped) = (said.replace("kept", "other"), helped.replace("kept", "other"));
+        desk.run(&format!("build {flag} other room.rt --size 4x3")).expect(2, &[&said, &helped]);
     }
+    assert!(!desk.names().contains(&"room.png".to_string()));
     build(&desk, "-o a.exr --checkpoint=a.exr").expect(2, &["both the picture and its checkpoint"]);
     build(&desk, "-o - --checkpoint").expect(2, &["--checkpoint=FILE"]);
     build(&desk, "-o a.exr --checkpoint=room.rt --resume=never").expect(2, &["would be replaced"]);
@@ -290,23 +297,64 @@ fn what_is_kept_and_gone_on_from_is_told() {
 }
 
 #[cfg(unix)]
+fn send(signal: &str, child: &Child) {
+    let kill = Command::new("sh").args(["-c", &format!("kill -{signal} {}", child.id())]).status();
+    assert!(kill.unwrap().success());
+}
+
+#[cfg(unix)]
 #[test]
 fn a_build_that_keeps_nothing_goes_on_after_a_request_to_keep() {
     let desk = desk();
-    let mut child = desk.command("build ball.rt --size 200x150 --samples 1000000 -o a.png");
-    let mut child = child.stderr(Stdio::piped()).spawn().unwrap();
-    std::thread::sleep(Duration::from_millis(1500));
-    let kill = Command::new("sh").args(["-c", &format!("kill -USR1 {}", child.id())]).status();
-    assert!(kill.unwrap().success());
+    let begin = |flags: &str, aside: &str| {
+        let arguments = format!("build ball.rt --size 200x150 --samples 1000000 -o a.png {flags}");
+        let mut child = desk.command(&arguments).stderr(Stdio::piped()).spawn().unwrap();
+        // Its ears are open before that.
+        desk.wait_for(aside, &mut child);
+        send("USR1", &child);
+        child
+    };
+    let mut quiet = begin("-q", ".rtc-a.png.1.tmp");
+    let mut child = begin("", ".rtc-a.png.2.tmp");
     // It says so between two steps of its work.
     let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
     assert!(lines.any(|line| line.contains("SIGUSR1") && line.contains("`--checkpoint`")), "it ended");
-    child.kill().unwrap();
-    child.wait().unwrap();
-    // What it left goes with the next one.
-    assert!(desk.names().contains(&".rtc-a.png.tmp".to_string()), "{:?}", desk.names());
+    assert!(quiet.try_wait().unwrap().is_none(), "it ended");
+    for child in [&mut quiet, &mut child] {
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    let mut said = String::new();
+    quiet.stderr.take().unwrap().read_to_string(&mut said).unwrap();
+    assert_eq!(said, "", "who is asked to say nothing but errors");
+    // What both left goes with the next one.
+    assert!(desk.names().contains(&".rtc-a.png.2.tmp".to_string()), "{:?}", desk.names());
     build(&desk, "--samples 1 -o a.png").expect(0, &[]);
     assert_eq!(desk.names(), ["a.png", "ball.rt", "room.rt"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn what_could_not_be_kept_is_told() {
+    let desk = desk();
+    let told = |flags: &str, blocks: u32| {
+        let arguments = format!("build room.rt --size 48x36 -o a.png --checkpoint {flags}");
+        let small =
+            format!("trap '' XFSZ; ulimit -f {blocks}; exec '{}' {arguments}", env!("CARGO_BIN_EXE_rtc"));
+        let mut command = Command::new("sh");
+        let ended = super::ended(command.args(["-c", &small]).current_dir(desk.path(".")).output().unwrap());
+        ended.expect(0, &[]);
+        let last = ended.stderr.lines().last().unwrap().to_string();
+        (ended.stderr.contains("the samples are not kept"), last)
+    };
+    let small = 20;
+    assert_eq!(told("--samples 4", small), (true, "could keep none".to_string()));
+    assert_eq!(told("--samples 4", 2000), (false, "kept 4 samples in `a.png.checkpoint`".to_string()));
+    let kept = desk.get("a.png.checkpoint");
+    assert!(kept.len() > 512 * small as usize, "{}", kept.len());
+    let went_on = "went on from 4 samples in `a.png.checkpoint`, could keep no more";
+    assert_eq!(told("--samples 9", small), (true, went_on.to_string()));
+    assert_eq!(desk.get("a.png.checkpoint"), kept);
 }
 
 #[test]
@@ -314,10 +362,7 @@ fn a_checkpoint_is_of_one_process_at_a_time() {
     let desk = desk();
     let mut first = desk.command("build room.rt --size 200x150 --samples 1000000 -o a.png --checkpoint=kept");
     let mut first = first.stderr(Stdio::null()).spawn().unwrap();
-    while !desk.names().contains(&".rtc-kept.lock.tmp".to_string()) {
-        assert!(first.try_wait().unwrap().is_none(), "it ended by itself");
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    desk.wait_for(".rtc-kept.lock.tmp", &mut first);
     build(&desk, "--samples 1 -o b.exr --checkpoint=kept")
         .expect(2, &["cannot write `kept`: another process"]);
     first.kill().unwrap();
@@ -363,15 +408,10 @@ fn signals_write_a_checkpoint() {
     for signal in ["INT", "TERM"] {
         let arguments = "build room.rt --size 200x150 --samples 1000000 -o a.png --checkpoint=kept";
         let mut child = desk.command(arguments).stderr(Stdio::piped()).spawn().unwrap();
-        let id = child.id();
-        let send = |signal: &str| {
-            let kill = Command::new("sh").args(["-c", &format!("kill -{signal} {id}")]).status();
-            assert!(kill.unwrap().success());
-        };
-        // Traced for a while, and its ears open.
-        std::thread::sleep(Duration::from_millis(1500));
+        // Its ears are open before that.
+        desk.wait_for(".rtc-kept.lock.tmp", &mut child);
         assert!(!desk.names().contains(&"kept".to_string()), "it is not time yet");
-        send("USR1");
+        send("USR1", &child);
         let start = Instant::now();
         while !desk.names().contains(&"kept".to_string()) {
             assert!(child.try_wait().unwrap().is_none(), "it ended by SIGUSR1");
@@ -380,7 +420,7 @@ fn signals_write_a_checkpoint() {
         }
         let before = desk.get("kept");
         std::thread::sleep(Duration::from_millis(800));
-        send(signal);
+        send(signal, &child);
         super::ended(child.wait_with_output().unwrap())
             .expect(130, &["interrupted; kept ", " samples", " in `kept`"]);
         assert_ne!(desk.get("kept"), before, "SIG{signal} wrote no checkpoint");

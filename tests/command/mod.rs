@@ -14,7 +14,8 @@ mod why;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::Duration;
 use tempfile::TempDir;
 
 /// The least scene.
@@ -70,6 +71,14 @@ impl Desk {
 
     pub fn run(&self, arguments: &str) -> Ended {
         ended(self.command(arguments).output().unwrap())
+    }
+
+    /// Waits until a process has made this file.
+    pub fn wait_for(&self, name: &str, child: &mut Child) {
+        while fs::symlink_metadata(self.path(name)).is_err() {
+            assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
+            std::thread::sleep(Duration::from_millis(5));
+        }
     }
 
     /// Runs with a file on standard input.
@@ -191,7 +200,7 @@ fn an_interrupted_build_ends_at_once_and_leaves_what_was_there() {
         // Under way as soon as its file is there.
         while desk.names().len() < 3 {
             assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
-            std::thread::sleep(std::time::Duration::from_millis(5));
+            std::thread::sleep(Duration::from_millis(5));
         }
         let kill = Command::new("sh").args(["-c", &format!("kill -{signal} {}", child.id())]).status();
         assert!(kill.unwrap().success());

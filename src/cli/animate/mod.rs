@@ -158,16 +158,16 @@ impl Studio<'_, '_> {
 
     /// Makes a frame, unless it is done, and adds it to the films. Whether the scene has no errors.
     fn add(&mut self, number: u32, patience: Duration, films: &mut [Sink]) -> Result<bool, Problem> {
-        let Context { terminal, ref threads, .. } = *self.context;
-        let (picture, facts) = match patiently(patience, terminal, || self.frame(number))? {
+        let context = self.context;
+        let (picture, facts) = match patiently(patience, context, || self.frame(number))? {
             Shot::Made(picture, facts) => (picture, facts),
             Shot::There(_) if films.is_empty() => return Ok(true),
             Shot::There(targets) => read(&targets)?,
             Shot::Failed => return Ok(false),
         };
         for film in films {
-            if let Some(warning) = threads.install(|| film.add(&picture, &facts))? {
-                terminal.line(&format!("warning: {warning}"));
+            if let Some(warning) = context.threads.install(|| film.add(&picture, &facts))? {
+                context.say(&format!("warning: {warning}"));
             }
         }
         Ok(true)

@@ -20,6 +20,8 @@ pub struct Sink {
     reel: Reel,
     depth: Depth,
     place: Place,
+    /// Keeps others from a place that is kept, where what lies beside it does not.
+    _held: Option<Aside>,
     interrupt: Interrupt,
     /// None before the first frame.
     work: Option<Work>,
@@ -59,17 +61,22 @@ impl Sink {
             }
             video::find(&name)?;
         }
+        let is_lent = matches!(form, Form::Video(_));
+        let held = (keeps && is_lent).then(|| Aside::hold(&to, interrupt)).transpose()?;
         let place = if is_standard(&to) {
             // Refused where it is a terminal.
             Target { path: to, format: Format::Png }.stage(interrupt)?;
             let file = tempfile::tempfile().map_err(|error| cannot(&name, &plain(&error)))?;
             Place::Standard(file)
+        } else if is_lent {
+            Place::Aside(Aside::to_lend(&to, interrupt)?)
         } else if keeps {
             Place::Aside(Aside::always_beside(&to, interrupt)?)
         } else {
             Place::Aside(Aside::beside(&to, interrupt)?)
         };
-        Ok(Sink { name, form, reel, depth, place, interrupt: interrupt.clone(), work: None, warned: false })
+        let interrupt = interrupt.clone();
+        Ok(Sink { name, form, reel, depth, place, _held: held, interrupt, work: None, warned: false })
     }
 
     /// Adds a frame. Gives what is to be feared of those to come, once.
