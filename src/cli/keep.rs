@@ -4,11 +4,11 @@ use super::args::{Build, Every, Keeping, Resume};
 use super::interrupt::Interrupt;
 use super::target::{Aside, Target};
 use super::terminal::Terminal;
-use super::{Problem, build, input};
+use super::{Problem, build, input, plain};
 use rt_lang::output::{Facts, MOST_PIXELS};
 use rt_lang::render::making::Making;
 use rt_lang::saved::{self, CHANNELS, EARLY_CHANNELS, Head, Saved, Subject};
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -29,6 +29,8 @@ const COST: u32 = 20;
 pub struct Places {
     /// Where they are kept.
     to: PathBuf,
+    /// Whether a flag names that file.
+    named: bool,
     /// Where they come from, and whether there must be some.
     from: Option<(PathBuf, bool)>,
     /// Whether samples of another picture are left aside, and not an error.
@@ -39,6 +41,25 @@ impl Places {
     /// The same for a frame of a film: where the scene has changed, it is made anew.
     pub fn yielding(self) -> Places {
         Places { yields: true, ..self }
+    }
+
+    /// Refuses to replace one of the files that the picture is made of.
+    pub fn refuse_replacing(&self, inputs: &[PathBuf]) -> Result<(), Problem> {
+        refuse_replacing(inputs, &self.to, self.named)
+    }
+
+    /// Refuses to replace what is no checkpoint, and not even a torn one, under a name that may be of anything.
+    fn refuse_foreign(&self) -> Result<(), Problem> {
+        if !self.named || !input::is_there(&self.to)? {
+            return Ok(());
+        }
+        let problem = |why: String| {
+            let to = self.to.display();
+            Problem::new(format!("`{to}` would be replaced by the checkpoint, and {why}"))
+                .help("remove it, or name another file: `--checkpoint=FILE`")
+        };
+        let start = start(&self.to).map_err(|error| problem(format!("cannot be read: {}", plain(&error))))?;
+        Head::recognize(&start).map_err(|why| problem(why.to_string()))
     }
 }
 
@@ -54,7 +75,18 @@ pub fn refuse_checkpoints_of_others(arguments: &Build) -> Result<(), Problem> {
         let problem = Problem::new("several scenes cannot be kept in one file");
         return Err(problem.help("without its name each checkpoint goes beside its picture"));
     }
-    build::refuse_inputs_as_outputs(&arguments.scenes, std::slice::from_ref(named))
+    refuse_replacing(&arguments.scenes, named, true)
+}
+
+/// Refuses to keep samples in one of these files.
+fn refuse_replacing(inputs: &[PathBuf], to: &PathBuf, named: bool) -> Result<(), Problem> {
+    let Some(to) = build::first_replaced(inputs, std::slice::from_ref(to)) else { return Ok(()) };
+    let problem = Problem::new(format!("`{}` would be replaced by the checkpoint", to.display()));
+    Err(problem.help(if named {
+        "name another file: `--checkpoint=FILE`"
+    } else {
+        "name another output with `-o`"
+    }))
 }
 
 /// The file of `--checkpoint FILE`, with a space, is taken for a scene.
@@ -83,11 +115,9 @@ pub fn places(arguments: &Keeping, targets: &[Target]) -> Result<Option<Places>,
     if !arguments.keeps() {
         return Ok(None);
     }
-    let named = arguments.checkpoint.clone().flatten();
-    let to = match (named, &arguments.resume) {
-        (Some(named), _) => named,
-        (None, Some(Resume::From(file))) => file.clone(),
-        (None, _) => beside(targets)?,
+    let (to, named) = match (&arguments.checkpoint, &arguments.resume) {
+        (Some(Some(file)), _) | (_, Some(Resume::From(file))) => (file.clone(), true),
+        _ => (beside(targets)?, false),
     };
     if targets.iter().any(|target| build::same(&target.path) == build::same(&to)) {
         let problem =
@@ -99,7 +129,7 @@ pub fn places(arguments: &Keeping, targets: &[Target]) -> Result<Option<Places>,
         Some(Resume::From(file)) => Some((file.clone(), true)),
         Some(Resume::Auto) | None => Some((to.clone(), false)),
     };
-    Ok(Some(Places { to, from, yields: false }))
+    Ok(Some(Places { to, named, from, yields: false }))
 }
 
 /// Where the samples of a picture are kept that goes to these targets, unless a flag says it.
@@ -123,9 +153,14 @@ pub struct Account {
 
 /// What a file of samples says that it is of; none where it is no such file.
 pub fn head(path: &Path) -> Option<Head> {
-    let mut head = vec![];
-    input::open_plain(path).and_then(|file| file.take(HEAD).read_to_end(&mut head)).ok()?;
-    Head::decode(&head).ok()
+    Head::decode(&start(path).ok()?).ok()
+}
+
+/// As much of a plain file as its head may have.
+fn start(path: &Path) -> io::Result<Vec<u8>> {
+    let mut start = vec![];
+    input::open_plain(path)?.take(HEAD).read_to_end(&mut start)?;
+    Ok(start)
 }
 
 /// Samples in a file.
@@ -208,8 +243,14 @@ impl<'a> Keeper<'a> {
         &mut self,
         refuses: impl FnOnce(&Making) -> Option<String>,
     ) -> Result<Option<Making>, Problem> {
+        if let Some((path, true)) = &self.places.from {
+            input::open_plain(path).map_err(|error| input::cannot_read(path, &error))?;
+        }
         self.held = Some(Aside::hold(&self.places.to, self.interrupt)?);
         drop(Aside::always_beside(&self.places.to, self.interrupt)?);
+        if !matches!(&self.places.from, Some((path, true)) if *path == self.places.to) {
+            self.places.refuse_foreign()?;
+        }
         let Some((path, must_be)) = &self.places.from else { return Ok(None) };
         if !must_be && !input::is_there(path)? {
             return Ok(None);

@@ -272,6 +272,54 @@ fn what_was_kept_goes_on_to_the_same_bytes() {
 }
 
 #[test]
+fn nothing_but_a_checkpoint_is_replaced_by_one() {
+    let desk = desk();
+    build(&desk, "--samples 1 -o a.exr -o tex.png --checkpoint=kept.exr").expect(0, &[]);
+    let images =
+        "sphere { radius: 1m, material: diffuse { color: image(\"tex.png\") } }\nsky { image: \"kept.exr\" }";
+    desk.put("main.rt", format!("import \"ball.rt\" as ball\nball {{ }}\n{images}\n"));
+    desk.put("notes.txt", "a text of years");
+    desk.put("empty", "");
+    let main = |file: &str, rest: &str| {
+        let before = desk.get(file);
+        let said = format!("`{file}` would be replaced by the checkpoint");
+        let ended =
+            desk.run(&format!("build main.rt --size 8x6 --samples 1 -q -o b.png --checkpoint={file} {rest}"));
+        ended.expect(2, &[&said, "name another file: `--checkpoint=FILE`"]);
+        assert!(desk.get(file) == before && !desk.names().contains(&"b.png".into()), "{file} {rest}");
+        ended.stderr
+    };
+    for rest in ["", "--resume=never", "--resume=kept.exr"] {
+        // What is removed is not there any more to be read.
+        for input in ["main.rt", "ball.rt", "tex.png", "kept.exr"] {
+            assert!(!main(input, rest).contains("remove"), "{input} {rest}");
+        }
+        for (other, what) in [("notes.txt", "a text"), ("a.exr", "a picture alone"), ("empty", "empty")] {
+            let said = main(other, rest);
+            assert!(said.contains(what) && said.contains("remove it, or"), "{said}");
+        }
+    }
+    // One that is torn, or of another version, is one all the same.
+    let kept = desk.get("kept.exr");
+    let (form, at) = (b"rtc.saved.version\0string\0\x01\0\0\0", |bytes: &[u8], form: &[u8]| {
+        bytes.windows(form.len()).position(|part| part == form).unwrap() + form.len()
+    });
+    let mut old = kept.clone();
+    old[at(&kept, form)] = b'1';
+    for wrong in [&kept[..kept.len() / 2], &old] {
+        desk.put("wrong", wrong);
+        build(&desk, "-o b.png --checkpoint=wrong").expect(2, &["cannot go on from `wrong`", "replaces it"]);
+        build(&desk, "--samples 1 -o b.png --checkpoint=wrong --resume=never").expect(0, &[]);
+        build(&desk, "--samples 1 -o b.png --checkpoint=wrong").expect(0, &[]);
+    }
+    // A name that nobody chose is of nothing else.
+    desk.put("b.png.checkpoint", "junk");
+    build(&desk, "--samples 1 -o b.png --resume=never").expect(0, &[]);
+    fs::create_dir(desk.path("folder")).unwrap();
+    build(&desk, "-o b.png --resume=folder").expect(2, &["cannot read `folder`: it is not a file"]);
+}
+
+#[test]
 fn what_is_kept_and_gone_on_from_is_told() {
     let desk = desk();
     let build = |rest: &str| desk.run(&format!("build room.rt --size 16x12 -o a.png {rest}"));

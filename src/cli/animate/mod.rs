@@ -254,6 +254,7 @@ impl Studio<'_, '_> {
                 }
             }
         }
+        plan.refuse_replacing(&self.disk.read_paths())?;
         let staged = build::stage(self.context, &targets, scene, window)?;
         let name = format!("{} {number}/{}", self.orders.scene.display(), self.orders.of);
         let traced =
