@@ -3,7 +3,7 @@
 use super::{Desk, Ended, assert_same, ended, read_png};
 use image::AnimationDecoder;
 use std::fs;
-use std::io::Cursor;
+use std::io::{BufRead, BufReader, Cursor};
 use std::process::Stdio;
 use std::time::Duration;
 
@@ -315,6 +315,32 @@ fn frames_that_are_made_twice_at_once_are_whole() {
 }
 
 #[test]
+fn a_film_in_one_file_is_waited_for() {
+    let desk = desk();
+    for outputs in ["-o film.webp", "-o f.{}.exr -o both.webp"] {
+        let film = |rest: &str| {
+            let mut command =
+                command_of(&desk, &format!("--frames 3 --size 24x18 {outputs} --resume {rest}"));
+            command.stderr(Stdio::piped()).spawn().unwrap()
+        };
+        let mut first = film("--samples 1000000");
+        while !desk.names().iter().any(|name| name.ends_with(".webp.tmp")) {
+            assert!(first.try_wait().unwrap().is_none(), "it ended by itself");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        ended(film("--samples 3").wait_with_output().unwrap())
+            .expect(2, &["another process is writing it", "--wait"]);
+        let mut second = film("--samples 3 --wait 10min");
+        let mut lines = BufReader::new(second.stderr.take().unwrap()).lines().map_while(Result::ok);
+        assert!(lines.any(|line| line.contains("it is waited for")), "it ended");
+        first.kill().unwrap();
+        first.wait().unwrap();
+        assert!(lines.any(|line| line.starts_with("3 frames in")), "it ended");
+        assert!(second.wait().unwrap().success());
+    }
+}
+
+#[test]
 fn frames_with_names_in_them_are_made_anew_when_these_change() {
     let desk = desk();
     let named = |name: &str| {
@@ -468,7 +494,6 @@ fn an_interrupted_film_leaves_what_was_there_and_goes_on() {
 }
 
 /// A film of the rising ball with flags of its own.
-#[cfg(unix)]
 fn command_of(desk: &Desk, rest: &str) -> std::process::Command {
     let mut command = desk.command("build rise.rt");
     command.args(["--sweep", "t = 0 to 1"]).args(rest.split_whitespace());

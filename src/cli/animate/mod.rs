@@ -125,13 +125,14 @@ impl Studio<'_, '_> {
         if orders.of > 1 && self.compile(orders.of)?.is_none() {
             return Ok(None);
         }
-        let mut films = self.open(scene)?;
+        let wait = self.context.arguments.keeping.wait.unwrap_or_default();
+        let mut films = patiently(wait, self.context.terminal, || self.open(scene))?;
         orders.make_folder()?;
         let lines = if self.context.arguments.quiet { &[][..] } else { &first.notes };
         lines.iter().for_each(|note| self.context.terminal.line(note));
         drop(first);
         // Frames that others are making come last, but for a film, which wants them in turn.
-        let (mut busy, wait) = (vec![], self.context.arguments.keeping.wait.unwrap_or_default());
+        let mut busy = vec![];
         for &number in &orders.numbers {
             let patience = if films.is_empty() { Duration::ZERO } else { wait };
             match self.add(number, patience, &mut films) {

@@ -38,7 +38,7 @@ pub struct Keeping {
         default_missing_value = "auto", value_parser = resume)]
     pub resume: Option<Resume>,
 
-    /// Waits for so long while another process is writing the same picture, share or frame, and then goes on from what that one
+    /// Waits for so long while another process is writing the same picture, share, frame or film, and then goes on from what that one
     /// has left. Without it, that is an error.
     #[arg(long, value_name = "TIME", value_parser = time)]
     pub wait: Option<Duration>,
