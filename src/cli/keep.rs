@@ -237,8 +237,8 @@ impl<'a> Keeper<'a> {
     }
 
     /// The picture to go on with; none where there is nothing to go on from. What differs is an error, in what `refuses` says
-    /// too; and so is a file that is damaged, for nobody should lose work by going on without it; and a place where nothing
-    /// can be kept.
+    /// too; and so is a file that is damaged, for nobody should lose work by going on without it, though a frame of a film is begun
+    /// anew; and a place where nothing can be kept.
     pub fn resume(
         &mut self,
         refuses: impl FnOnce(&Making) -> Option<String>,
@@ -257,13 +257,14 @@ impl<'a> Keeper<'a> {
         }
         let bytes = input::read_plain(path, LARGEST)?;
         let cannot = |why: String, help: &str| {
-            let problem = Problem::new(format!("cannot go on from `{}`: {why}", path.display()));
-            match self.places.yields {
-                true => problem.help("remove that file, and the frame is made from its beginning"),
-                false => problem.help(help),
-            }
+            Problem::new(format!("cannot go on from `{}`: {why}", path.display())).help(help)
         };
-        let saved = Saved::decode(&bytes).map_err(|why| {
+        let saved = Saved::decode(&bytes);
+        if let (Err(why), true) = (&saved, self.places.yields) {
+            self.say_begun_anew(path, &format!("it {why}"));
+            return Ok(None);
+        }
+        let saved = saved.map_err(|why| {
             let help = match must_be {
                 true => "name a file that `--checkpoint` wrote, or begin afresh with `--resume=never`",
                 false => {
@@ -274,7 +275,7 @@ impl<'a> Keeper<'a> {
         })?;
         match self.subject.refuses(&saved.subject, CALLED).or_else(|| refuses(&saved.making)) {
             Some(why) if self.places.yields => {
-                self.terminal.line(&format!("`{}` is not gone on from: {why}", path.display()));
+                self.say_begun_anew(path, &why);
                 Ok(None)
             }
             Some(why) => Err(cannot(
@@ -292,6 +293,10 @@ impl<'a> Keeper<'a> {
                 Ok(Some(saved.making))
             }
         }
+    }
+
+    fn say_begun_anew(&self, path: &Path, why: &str) {
+        self.terminal.line(&format!("`{}` is not gone on from: {why}", path.display()));
     }
 
     /// Keeps the samples if it is time, or if that was asked for.

@@ -357,13 +357,20 @@ fn frames_with_names_in_them_are_made_anew_when_these_change() {
 }
 
 #[test]
-fn a_damaged_checkpoint_of_a_frame_is_told_with_its_mend() {
+fn a_damaged_checkpoint_of_a_frame_has_it_made_anew() {
     let desk = desk();
-    desk.put("f1.png.checkpoint", "junk");
-    let film = || build(&desk, r#"--sweep "t = 0 to 1" --frames 1 -o f{}.png --resume"#);
-    film().expect(2, &["cannot go on from `f1.png.checkpoint`", "remove that file"]);
-    fs::remove_file(desk.path("f1.png.checkpoint")).unwrap();
-    film().expect(0, &["frame 1 of 1: 3 samples"]);
+    let film = |rest: &str| build(&desk, &format!(r#"--sweep "t = 0 to 1" --frames 3 -o f{{}}.png {rest}"#));
+    desk.put("f2.png.checkpoint", "junk");
+    film("--resume").expect(
+        0,
+        &[
+            "`f2.png.checkpoint` is not gone on from: it is no checkpoint",
+            "frame 2 of 3: 3 samples",
+            "frame 3 of 3",
+        ],
+    );
+    assert!(!desk.names().contains(&"f2.png.checkpoint".to_string()));
+    film("--resume").expect(0, &["frame 2 of 3 is done"]);
 }
 
 #[cfg(unix)]
