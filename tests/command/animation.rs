@@ -189,6 +189,16 @@ fn what_cannot_be_is_refused_before_any_work() {
     refused("-o {}.png --fps 25", &["`--fps` is for a film in one file", "-o film.webp"]);
     refused("-o {}.png --resume kept", &["`--resume=kept`"]);
     refused("-o no/film.webp", &["there is no folder `no`"]);
+    refused("-o no/{}.png", &["there is no folder `no`"]);
+    for folder in ["g1", "g2"] {
+        fs::create_dir(desk.path(folder)).unwrap();
+    }
+    let folders = build(&desk, r#"--sweep "t = 0 to 1" --frames 3 -o g{}/a.png"#);
+    folders.expect(2, &["cannot write `g3/a.png`: there is no folder `g3`"]);
+    for folder in ["g1", "g2"] {
+        // Empty, for no frame was made.
+        fs::remove_dir(desk.path(folder)).unwrap();
+    }
     build(&desk, "-o out.{04}.png").expect(2, &["`out.{04}.png` is the name of frames", "--frames 48"]);
     build(&desk, "-o out.mp4").expect(2, &["`mp4` is no format of pictures", "--frames 48"]);
     build(&desk, "--frames 5 -o {}.png").expect(2, &["--sweep"]);

@@ -64,6 +64,7 @@ impl Orders {
         let rate = arguments.animating.fps.unwrap_or(default);
         let mut orders = Orders { scene: scene.clone(), of, numbers, rate, films, each, kept: None };
         orders.refuse_misfits(arguments)?;
+        orders.refuse_no_places()?;
         orders.kept = orders.kept_frames(arguments)?;
         Ok(orders)
     }
@@ -124,6 +125,16 @@ impl Orders {
             names if names.is_empty() => frame,
             names => format!("{}, {frame}", names.join(", ")),
         }
+    }
+
+    /// Refuses frames that cannot be written where they go, for want of a folder say. Where only the names of files have the number,
+    /// the first frame tells.
+    fn refuse_no_places(&self) -> Result<(), Problem> {
+        self.each.iter().try_for_each(|pattern| {
+            let count = if pattern.has_folders() { self.numbers.len() } else { 1 };
+            let mut numbers = self.numbers.iter().take(count);
+            numbers.try_for_each(|number| pattern.target(*number)?.refuse_no_place())
+        })
     }
 
     /// Makes the folder of frames that are kept, if there is one.
