@@ -317,7 +317,7 @@ impl<'a> Keeper<'a> {
         match kept {
             Ok(()) => self.account.to = Some(Amount::of(making, &self.places.to)),
             Err(problem) if !self.complained => {
-                self.terminal.problem(&problem.help("the samples are not kept; the picture goes on"));
+                self.terminal.warning(&problem.help("the samples are not kept; the picture goes on"));
                 self.complained = true;
             }
             Err(_) => {}

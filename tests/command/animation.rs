@@ -178,7 +178,10 @@ fn what_cannot_be_is_refused_before_any_work() {
     refused("-o %04d.png", &["`{04}`"]);
     refused("-o {04}.png -o {04}.png", &["`0001.png` is given twice"]);
     refused("-o out.gif", &["no format of films"]);
-    refused("-o {}.png --shard 1/2", &["`--shard` and `--frames` do not go together", "--only"]);
+    refused(
+        "-o {}.png --shard 1/2",
+        &["`--shard` is for one picture, and `--sweep` with `--frames`", "--only"],
+    );
     refused("-o {}.png --feedback", &["`--feedback`"]);
     refused("-o {}.png --checkpoint=kept", &["`kept` cannot keep all frames"]);
     refused("-o {}.png --aov depth", &["`--aov` is for EXR files"]);

@@ -74,8 +74,10 @@ fn shares_put_together_are_the_picture_of_one_machine() {
     desk.run("merge part1.exr foreign.exr part3.exr -o no.exr")
         .expect(2, &["`foreign.exr` does not go with `part1.exr` and 1 more", "`--seed 0` (this share: 9)"]);
     // The odd one is that which most do not go with, wherever it stands; of two that is nobody.
-    desk.run("merge --partial foreign.exr part1.exr part3.exr -o look.png")
-        .expect(0, &["`foreign.exr` does not go with", "it is left out", "7 samples", "of 2 shares"]);
+    desk.run("merge --partial foreign.exr part1.exr part3.exr -o look.png").expect(
+        0,
+        &["warning: `foreign.exr` does not go with", "it is left out", "7 samples", "of 2 shares"],
+    );
     desk.run("merge --partial foreign.exr part1.exr -o no.exr")
         .expect(2, &["`foreign.exr` and `part1.exr` are shares of different pictures"]);
     desk.run("merge one.exr -o no.exr")
@@ -241,6 +243,8 @@ fn what_was_kept_goes_on_to_the_same_bytes() {
     refused("--resume=missing", &["--resume"]);
     let resized = desk.run("build room.rt --size 24x18 -q -o a.exr --resume");
     resized.expect(2, &["another picture: `--size 24x18` (kept: 48x36)\n"]);
+    let reshaped = desk.run("build room.rt --size 47x36 -q -o a.exr --resume");
+    reshaped.expect(2, &["another picture: `--size 47x36` (kept: 48x36)\n"]);
     build(&desk, "-o a.exr --resume=missing").expect(2, &["cannot read `missing`"]);
     desk.put("room.rt", ROOM.replace("power: 90W", "power: 91W"));
     refused("", &["of another picture: other materials"]);
@@ -317,6 +321,23 @@ fn nothing_but_a_checkpoint_is_replaced_by_one() {
     build(&desk, "--samples 1 -o b.png --resume=never").expect(0, &[]);
     fs::create_dir(desk.path("folder")).unwrap();
     build(&desk, "-o b.png --resume=folder").expect(2, &["cannot read `folder`: it is not a file"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn samples_that_cannot_be_kept_are_a_warning() {
+    let desk = desk();
+    fs::create_dir(desk.path("store")).unwrap();
+    let flags = "--size 48x36 --time 2s -o a.png --checkpoint=store/kept --checkpoint-every 1spp";
+    let mut child = desk.command(&format!("build room.rt {flags}")).stderr(Stdio::piped()).spawn().unwrap();
+    while !desk.path("store/kept").exists() {
+        assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    fs::rename(desk.path("store"), desk.path("elsewhere")).unwrap();
+    let ended = super::ended(child.wait_with_output().unwrap());
+    ended.expect(0, &["warning: cannot write `store/kept`: there is no folder", "the picture goes on"]);
+    assert!(!ended.stderr.contains("error") && desk.path("a.png").exists(), "{}", ended.stderr);
 }
 
 #[test]

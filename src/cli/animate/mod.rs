@@ -264,7 +264,7 @@ impl Studio<'_, '_> {
             .install(|| build::write(traced.versions(), &traced.facts, &traced.channels, depth, staged))?;
         if keeping.keeps() {
             if let Err(problem) = mark::record(&subject, &targets, interrupt) {
-                terminal.problem(&problem.help("the frame is made; asked for again, it is made anew"));
+                terminal.warning(&problem.help("the frame is made; asked for again, it is made anew"));
             }
             // What is done needs no samples any more.
             let _ = fs::remove_file(keep::beside(&targets)?);

@@ -190,12 +190,14 @@ fn refuse_what_films_cannot(arguments: &Build) -> Result<(), Problem> {
     };
     match arguments {
         Build { keeping: Keeping { shard: Some(_), .. }, .. } => {
-            let problem = Problem::new("`--shard` and `--frames` do not go together");
+            let problem =
+                Problem::new("`--shard` is for one picture, and `--sweep` with `--frames` makes a film");
             Err(problem
                 .help("machines share a film by its frames: `--only 1-10`, or `--only auto` in a job array"))
         }
         Build { feedback: true, .. } => {
-            let problem = Problem::new("`--feedback` and `--frames` do not go together");
+            let problem =
+                Problem::new("`--feedback` is for one picture, and `--sweep` with `--frames` makes a film");
             Err(problem.help("it is of one picture: choose a frame with `--set`"))
         }
         Build { keeping: Keeping { checkpoint: Some(Some(file)), .. }, .. } => Err(named(file)),
