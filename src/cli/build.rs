@@ -175,16 +175,17 @@ pub fn paths(targets: &[Target]) -> Vec<PathBuf> {
 
 /// Nobody means to replace a scene, or what it is made of, by its picture.
 pub fn refuse_inputs_as_outputs(inputs: &[PathBuf], outputs: &[PathBuf]) -> Result<(), Problem> {
+    let Some(output) = first_replaced(inputs, outputs) else { return Ok(()) };
+    let problem = Problem::new(format!("`{}` would be replaced by the picture", output.display()));
+    Err(problem.help("name another output with `-o`"))
+}
+
+/// The first of the files to be written that would replace one of those that are read.
+pub fn first_replaced<'o>(inputs: &[PathBuf], outputs: &'o [PathBuf]) -> Option<&'o PathBuf> {
     // Folders are refused when they are read.
     let files = inputs.iter().filter(|path| !is_standard(path) && !path.is_dir());
     let inputs: Vec<PathBuf> = files.map(|path| same(path)).collect();
-    match outputs.iter().find(|output| !is_standard(output) && inputs.contains(&same(output))) {
-        Some(output) => {
-            let problem = Problem::new(format!("`{}` would be replaced by the picture", output.display()));
-            Err(problem.help("name another output with `-o`"))
-        }
-        None => Ok(()),
-    }
+    outputs.iter().find(|output| !is_standard(output) && inputs.contains(&same(output)))
 }
 
 /// `--bits 16` must find a PNG to apply to.
@@ -239,6 +240,7 @@ fn build(context: &Context, job: &Job, messenger: &mut Messenger) -> Result<Exit
     let staged = patiently(wait, context, || stage(context, &job.targets, scene, window))?;
     let Some(from) = compiled.provenance(&loaded.sources) else { return Ok(Exit::Diagnostics) };
     let plan = Plan::new(arguments, from, window, &job.targets)?;
+    plan.refuse_replacing(&loaded.read())?;
     let mut traced = context.threads.install(|| trace(context, &job.scene, plan, None))?;
     context.threads.install(|| match &traced.sums {
         Some((subject, making)) => write_share(subject, making, &traced.facts, staged),

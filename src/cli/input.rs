@@ -74,15 +74,17 @@ pub fn open_plain(path: &Path) -> io::Result<File> {
     }
 }
 
-fn all(path: &Path, from: io::Result<impl Read>, most: u64) -> Result<Vec<u8>, Problem> {
-    let problem = |error: io::Error| {
-        let reason = match error.kind() {
-            io::ErrorKind::InvalidInput => "it is not a file".to_string(),
-            _ => plain(&error),
-        };
-        Problem::new(format!("cannot read `{}`: {reason}", path.display()))
+/// A file that a user names cannot be read.
+pub fn cannot_read(path: &Path, error: &io::Error) -> Problem {
+    let reason = match error.kind() {
+        io::ErrorKind::InvalidInput => "it is not a file".to_string(),
+        _ => plain(error),
     };
-    let bytes = from.and_then(|from| limited(from, most)).map_err(problem)?;
+    Problem::new(format!("cannot read `{}`: {reason}", path.display()))
+}
+
+fn all(path: &Path, from: io::Result<impl Read>, most: u64) -> Result<Vec<u8>, Problem> {
+    let bytes = from.and_then(|from| limited(from, most)).map_err(|error| cannot_read(path, &error))?;
     if bytes.len() as u64 > most {
         return Err(Problem::new(format!("`{}` is larger than {}", path.display(), size(most))));
     }

@@ -4,11 +4,11 @@ use super::args::{Build, Every, Keeping, Resume};
 use super::build::Context;
 use super::interrupt::Interrupt;
 use super::target::{Aside, Target};
-use super::{Problem, build, input};
+use super::{Problem, build, input, plain};
 use rt_lang::output::{Facts, MOST_PIXELS, is_exr};
 use rt_lang::render::making::Making;
 use rt_lang::saved::{self, CHANNELS, EARLY_CHANNELS, Head, Saved, Subject};
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -29,6 +29,8 @@ const COST: u32 = 20;
 pub struct Places {
     /// Where they are kept.
     to: PathBuf,
+    /// Whether a flag names that file.
+    named: bool,
     /// Where they come from, and whether there must be some.
     from: Option<(PathBuf, bool)>,
     /// Whether samples of another picture are left aside, and not an error.
@@ -39,6 +41,25 @@ impl Places {
     /// The same for a frame of a film: where the scene has changed, it is made anew.
     pub fn yielding(self) -> Places {
         Places { yields: true, ..self }
+    }
+
+    /// Refuses to replace one of the files that the picture is made of.
+    pub fn refuse_replacing(&self, inputs: &[PathBuf]) -> Result<(), Problem> {
+        refuse_replacing(inputs, &self.to, self.named)
+    }
+
+    /// Refuses to replace what is no checkpoint, and not even a torn one, under a name that may be of anything.
+    fn refuse_foreign(&self) -> Result<(), Problem> {
+        if !self.named || !input::is_there(&self.to)? {
+            return Ok(());
+        }
+        let problem = |why: String| {
+            let to = self.to.display();
+            Problem::new(format!("`{to}` would be replaced by the checkpoint, and {why}"))
+                .help("remove it, or name another file: `--checkpoint=FILE`")
+        };
+        let start = start(&self.to).map_err(|error| problem(format!("cannot be read: {}", plain(&error))))?;
+        Head::recognize(&start).map_err(|why| problem(why.to_string()))
     }
 }
 
@@ -54,7 +75,18 @@ pub fn refuse_checkpoints_of_others(arguments: &Build) -> Result<(), Problem> {
         let problem = Problem::new("several scenes cannot be kept in one file");
         return Err(problem.help("without its name each checkpoint goes beside its picture"));
     }
-    build::refuse_inputs_as_outputs(&arguments.scenes, std::slice::from_ref(named))
+    refuse_replacing(&arguments.scenes, named, true)
+}
+
+/// Refuses to keep samples in one of these files.
+fn refuse_replacing(inputs: &[PathBuf], to: &PathBuf, named: bool) -> Result<(), Problem> {
+    let Some(to) = build::first_replaced(inputs, std::slice::from_ref(to)) else { return Ok(()) };
+    let problem = Problem::new(format!("`{}` would be replaced by the checkpoint", to.display()));
+    Err(problem.help(if named {
+        "name another file: `--checkpoint=FILE`"
+    } else {
+        "name another output with `-o`"
+    }))
 }
 
 /// The file of `--checkpoint FILE`, with a space, is taken for a scene.
@@ -83,11 +115,9 @@ pub fn places(arguments: &Keeping, targets: &[Target]) -> Result<Option<Places>,
     if !arguments.keeps() {
         return Ok(None);
     }
-    let named = arguments.checkpoint.clone().flatten();
-    let to = match (named, &arguments.resume) {
-        (Some(named), _) => named,
-        (None, Some(Resume::From(file))) => file.clone(),
-        (None, _) => beside(targets)?,
+    let (to, named) = match (&arguments.checkpoint, &arguments.resume) {
+        (Some(Some(file)), _) | (_, Some(Resume::From(file))) => (file.clone(), true),
+        _ => (beside(targets)?, false),
     };
     if targets.iter().any(|target| build::same(&target.path) == build::same(&to)) {
         let problem =
@@ -99,7 +129,7 @@ pub fn places(arguments: &Keeping, targets: &[Target]) -> Result<Option<Places>,
         Some(Resume::From(file)) => Some((file.clone(), true)),
         Some(Resume::Auto) | None => Some((to.clone(), false)),
     };
-    Ok(Some(Places { to, from, yields: false }))
+    Ok(Some(Places { to, named, from, yields: false }))
 }
 
 /// Where the samples of a picture are kept that goes to these targets, unless a flag says it.
@@ -125,18 +155,18 @@ pub struct Account {
 
 /// What a file of samples says that it is of; none where it is no such file.
 pub fn head(path: &Path) -> Option<Head> {
-    Head::decode(&beginning(path)?).ok()
+    Head::decode(&start(path).ok()?).ok()
 }
 
 fn begins_as_exr(path: &Path) -> bool {
-    beginning(path).is_some_and(|bytes| is_exr(&bytes))
+    start(path).is_ok_and(|bytes| is_exr(&bytes))
 }
 
-/// The first bytes of a file, if it is one and can be read.
-fn beginning(path: &Path) -> Option<Vec<u8>> {
-    let mut bytes = vec![];
-    input::open_plain(path).and_then(|file| file.take(HEAD).read_to_end(&mut bytes)).ok()?;
-    Some(bytes)
+/// As much of a plain file as its head may have.
+fn start(path: &Path) -> io::Result<Vec<u8>> {
+    let mut start = vec![];
+    input::open_plain(path)?.take(HEAD).read_to_end(&mut start)?;
+    Ok(start)
 }
 
 /// Samples in a file.
@@ -226,27 +256,34 @@ impl<'a> Keeper<'a> {
     }
 
     /// The picture to go on with; none where there is nothing to go on from. What differs is an error, in what `refuses` says
-    /// too; and so is a file that is damaged, for nobody should lose work by going on without it; and a place where nothing
-    /// can be kept.
+    /// too; and so is a file that is damaged, for nobody should lose work by going on without it, though a frame of a film is begun
+    /// anew; and a place where nothing can be kept.
     pub fn resume(
         &mut self,
         refuses: impl FnOnce(&Making) -> Option<String>,
     ) -> Result<Option<Making>, Problem> {
+        if let Some((path, true)) = &self.places.from {
+            input::open_plain(path).map_err(|error| input::cannot_read(path, &error))?;
+        }
         self.held = Some(Aside::hold(&self.places.to, self.context.interrupt)?);
         drop(Aside::always_beside(&self.places.to, self.context.interrupt)?);
+        if !matches!(&self.places.from, Some((path, true)) if *path == self.places.to) {
+            self.places.refuse_foreign()?;
+        }
         let Some((path, must_be)) = &self.places.from else { return Ok(None) };
         if !must_be && !input::is_there(path)? {
             return Ok(None);
         }
         let bytes = input::read_plain(path, LARGEST)?;
         let cannot = |why: String, help: &str| {
-            let problem = Problem::new(format!("cannot go on from `{}`: {why}", path.display()));
-            match self.places.yields {
-                true => problem.help("remove that file, and the frame is made from its beginning"),
-                false => problem.help(help),
-            }
+            Problem::new(format!("cannot go on from `{}`: {why}", path.display())).help(help)
         };
-        let saved = Saved::decode(&bytes).map_err(|why| {
+        let saved = Saved::decode(&bytes);
+        if let (Err(why), true) = (&saved, self.places.yields) {
+            self.say_begun_anew(path, &format!("it {why}"));
+            return Ok(None);
+        }
+        let saved = saved.map_err(|why| {
             let help = match must_be {
                 true => "name a file that `--checkpoint` wrote, or begin afresh with `--resume=never`",
                 false => {
@@ -257,7 +294,7 @@ impl<'a> Keeper<'a> {
         })?;
         match self.subject.refuses(&saved.subject, CALLED).or_else(|| refuses(&saved.making)) {
             Some(why) if self.places.yields => {
-                self.context.say(&format!("`{}` is not gone on from: {why}", path.display()));
+                self.say_begun_anew(path, &why);
                 Ok(None)
             }
             Some(why) => Err(cannot(
@@ -275,6 +312,10 @@ impl<'a> Keeper<'a> {
                 Ok(Some(saved.making))
             }
         }
+    }
+
+    fn say_begun_anew(&self, path: &Path, why: &str) {
+        self.context.say(&format!("`{}` is not gone on from: {why}", path.display()));
     }
 
     /// Keeps the samples if it is time, or if that was asked for.
@@ -297,7 +338,7 @@ impl<'a> Keeper<'a> {
             Ok(()) => self.account.to = Some(Amount::of(making, &self.places.to)),
             Err(problem) if !self.complained => {
                 let problem = problem.help("the samples are not kept; the picture goes on");
-                self.context.terminal.problem(&problem);
+                self.context.terminal.warning(&problem);
                 self.complained = true;
             }
             Err(_) => {}

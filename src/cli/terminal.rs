@@ -49,8 +49,17 @@ impl Terminal {
 
     /// Says what is wrong with the command or a file.
     pub fn problem(self, problem: &Problem) {
-        let (on, off) = if self.style.color { ("\u{1b}[1;31m", "\u{1b}[0m") } else { ("", "") };
-        self.text(&format!("{on}error:{off} {}\n", printable_lines(&problem.message)));
+        self.labelled("error:", "\u{1b}[1;31m", problem);
+    }
+
+    /// Says what is wrong and does not keep what was asked for from being done.
+    pub fn warning(self, problem: &Problem) {
+        self.labelled("warning:", "\u{1b}[1;33m", problem);
+    }
+
+    fn labelled(self, label: &str, color: &str, problem: &Problem) {
+        let (on, off) = if self.style.color { (color, "\u{1b}[0m") } else { ("", "") };
+        self.text(&format!("{on}{label}{off} {}\n", printable_lines(&problem.message)));
         if let Some(help) = &problem.help {
             self.line(&format!("  help: {help}"));
         }

@@ -18,7 +18,7 @@ use rt_lang::render::{Cancelled, Control, Prepass, Shown, Structure, Tracer, Win
 use rt_lang::saved::{self, Share, Subject};
 use rt_lang::scene::{self, Scene, identity::Identity, identity::difference};
 use rt_lang::why::Provenance;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -108,6 +108,11 @@ impl<'a> Plan<'a> {
     /// The same for a frame of a film: see [`Places::yielding`].
     pub fn of_frame(self) -> Plan<'a> {
         Plan { places: self.places.map(Places::yielding), ..self }
+    }
+
+    /// Refuses to replace by a checkpoint what the picture is made of.
+    pub fn refuse_replacing(&self, inputs: &[PathBuf]) -> Result<(), Problem> {
+        self.places.as_ref().map_or(Ok(()), |places| places.refuse_replacing(inputs))
     }
 
     /// The scene and where it came from.

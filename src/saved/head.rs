@@ -27,24 +27,24 @@ pub struct Head {
 }
 
 impl Head {
+    /// Whether a file is one of sums, in whatever form and whether it can be used or not, by its first bytes; else what it is.
+    pub fn recognize(file: &[u8]) -> Result<(), Refused> {
+        of_sums(file).map(drop)
+    }
+
     /// Reads the head of a file, for which its first bytes do.
     pub fn decode(file: &[u8]) -> Result<Head, Refused> {
-        let head = decode_head(file).map_err(|reason| unreadable(file, reason))?;
-        let text = |name: &str| head.texts.iter().find(|(n, _)| n == name).map(|(_, value)| value.as_str());
-        match text(FORM) {
-            None => {
-                return refused("is a picture alone: it holds no exact sums, as checkpoints and shares do");
-            }
-            Some(version) if version != VERSION => {
-                let version: String = version.escape_debug().take(8).collect();
-                let other = format!(
-                    "holds its sums in form {version}, and this version of rtc reads form {VERSION} alone"
-                );
-                return refused(format!("{other}: only the version that wrote it can use it"));
-            }
-            Some(_) if !has_channels(&head) => return refused("has other channels than those of exact sums"),
-            Some(_) => {}
+        let (head, form) = of_sums(file)?;
+        if form != VERSION {
+            let form: String = form.escape_debug().take(8).collect();
+            let other =
+                format!("holds its sums in form {form}, and this version of rtc reads form {VERSION} alone");
+            return refused(format!("{other}: only the version that wrote it can use it"));
         }
+        if !has_channels(&head) {
+            return refused("has other channels than those of exact sums");
+        }
+        let text = |name: &str| text(&head, name);
         let program = text(PROGRAM).map(str::to_string);
         let identity = Identity::from_values(|name| text(&format!("{PREFIX}{name}")).map(str::to_string));
         let share = text(SHARE).map(|text| Share::parse(text).ok_or(())).transpose();
@@ -65,6 +65,20 @@ impl Head {
         let subject = Subject { program, identity, share };
         Ok(Head { subject, facts: head.facts, window, start, scale, judged, texts, checksum })
     }
+}
+
+/// The head of a file of sums, and their form.
+fn of_sums(file: &[u8]) -> Result<(output::Head, String), Refused> {
+    let head = decode_head(file).map_err(|reason| unreadable(file, reason))?;
+    match text(&head, FORM).map(str::to_string) {
+        Some(form) => Ok((head, form)),
+        None => refused("is a picture alone: it holds no exact sums, as checkpoints and shares do"),
+    }
+}
+
+/// The value of an attribute.
+fn text<'h>(head: &'h output::Head, name: &str) -> Option<&'h str> {
+    head.texts.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())
 }
 
 /// Whether it has the channels of sums, each once, maybe those of the first samples too, and beside them no more than those of

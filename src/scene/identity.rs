@@ -77,9 +77,15 @@ impl Identity {
     pub fn differences(&self, other: &Identity, called: &str) -> Vec<String> {
         // Who changes the size of a whole picture has not cropped it.
         let cropped = !(self.is_whole() && other.is_whole());
+        let ([width, height], [columns, rows]) = (self.size(), other.size());
+        // A picture of another shape is seen by another camera, whatever the scene says of it.
+        let reshaped = u64::from(width) * u64::from(rows) != u64::from(columns) * u64::from(height);
         let pairs = self.entries.iter().zip(&other.entries);
-        let different =
-            pairs.filter(|((name, own), (_, other))| own != other && (*name != "crop" || cropped));
+        let different = pairs.filter(|((name, own), (_, other))| match *name {
+            "crop" if !cropped => false,
+            "camera" if reshaped => false,
+            _ => own != other,
+        });
         different
             .map(|((name, own), (_, other))| match *name {
                 _ if name == &"camera" => "another camera".to_string(),

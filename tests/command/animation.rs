@@ -3,7 +3,7 @@
 use super::{Desk, Ended, assert_same, ended, read_png};
 use image::AnimationDecoder;
 use std::fs;
-use std::io::Cursor;
+use std::io::{BufRead, BufReader, Cursor};
 use std::process::Stdio;
 use std::time::Duration;
 
@@ -178,7 +178,10 @@ fn what_cannot_be_is_refused_before_any_work() {
     refused("-o %04d.png", &["`{04}`"]);
     refused("-o {04}.png -o {04}.png", &["`0001.png` is given twice"]);
     refused("-o out.gif", &["no format of films"]);
-    refused("-o {}.png --shard 1/2", &["`--shard` and `--frames` do not go together", "--only"]);
+    refused(
+        "-o {}.png --shard 1/2",
+        &["`--shard` is for one picture, and `--sweep` with `--frames`", "--only"],
+    );
     refused("-o {}.png --feedback", &["`--feedback`"]);
     refused("-o {}.png --checkpoint=kept", &["`kept` cannot keep all frames"]);
     refused("-o {}.png --aov depth", &["`--aov` is for EXR files"]);
@@ -189,6 +192,16 @@ fn what_cannot_be_is_refused_before_any_work() {
     refused("-o {}.png --fps 25", &["`--fps` is for a film in one file", "-o film.webp"]);
     refused("-o {}.png --resume kept", &["`--resume=kept`"]);
     refused("-o no/film.webp", &["there is no folder `no`"]);
+    refused("-o no/{}.png", &["there is no folder `no`"]);
+    for folder in ["g1", "g2"] {
+        fs::create_dir(desk.path(folder)).unwrap();
+    }
+    let folders = build(&desk, r#"--sweep "t = 0 to 1" --frames 3 -o g{}/a.png"#);
+    folders.expect(2, &["cannot write `g3/a.png`: there is no folder `g3`"]);
+    for folder in ["g1", "g2"] {
+        // Empty, for no frame was made.
+        fs::remove_dir(desk.path(folder)).unwrap();
+    }
     build(&desk, "-o out.{04}.png").expect(2, &["`out.{04}.png` is the name of frames", "--frames 48"]);
     build(&desk, "-o out.mp4").expect(2, &["`mp4` is no format of pictures", "--frames 48"]);
     build(&desk, "--frames 5 -o {}.png").expect(2, &["--sweep"]);
@@ -315,6 +328,32 @@ fn frames_that_are_made_twice_at_once_are_whole() {
 }
 
 #[test]
+fn a_film_in_one_file_is_waited_for() {
+    let desk = desk();
+    for outputs in ["-o film.webp", "-o f.{}.exr -o both.webp"] {
+        let film = |rest: &str| {
+            let mut command =
+                command_of(&desk, &format!("--frames 3 --size 24x18 {outputs} --resume {rest}"));
+            command.stderr(Stdio::piped()).spawn().unwrap()
+        };
+        let mut first = film("--samples 1000000");
+        while !desk.names().iter().any(|name| name.ends_with(".webp.tmp")) {
+            assert!(first.try_wait().unwrap().is_none(), "it ended by itself");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        ended(film("--samples 3").wait_with_output().unwrap())
+            .expect(2, &["another process is writing it", "--wait"]);
+        let mut second = film("--samples 3 --wait 10min");
+        let mut lines = BufReader::new(second.stderr.take().unwrap()).lines().map_while(Result::ok);
+        assert!(lines.any(|line| line.contains("it is waited for")), "it ended");
+        first.kill().unwrap();
+        first.wait().unwrap();
+        assert!(lines.any(|line| line.starts_with("3 frames in")), "it ended");
+        assert!(second.wait().unwrap().success());
+    }
+}
+
+#[test]
 fn frames_with_names_in_them_are_made_anew_when_these_change() {
     let desk = desk();
     let named = |name: &str| {
@@ -331,13 +370,20 @@ fn frames_with_names_in_them_are_made_anew_when_these_change() {
 }
 
 #[test]
-fn a_damaged_checkpoint_of_a_frame_is_told_with_its_mend() {
+fn a_damaged_checkpoint_of_a_frame_has_it_made_anew() {
     let desk = desk();
-    desk.put("f1.png.checkpoint", "junk");
-    let film = || build(&desk, r#"--sweep "t = 0 to 1" --frames 1 -o f{}.png --resume"#);
-    film().expect(2, &["cannot go on from `f1.png.checkpoint`", "remove that file"]);
-    fs::remove_file(desk.path("f1.png.checkpoint")).unwrap();
-    film().expect(0, &["frame 1 of 1: 3 samples"]);
+    let film = |rest: &str| build(&desk, &format!(r#"--sweep "t = 0 to 1" --frames 3 -o f{{}}.png {rest}"#));
+    desk.put("f2.png.checkpoint", "junk");
+    film("--resume").expect(
+        0,
+        &[
+            "`f2.png.checkpoint` is not gone on from: it is no checkpoint",
+            "frame 2 of 3: 3 samples",
+            "frame 3 of 3",
+        ],
+    );
+    assert!(!desk.names().contains(&"f2.png.checkpoint".to_string()));
+    film("--resume").expect(0, &["frame 2 of 3 is done"]);
 }
 
 #[cfg(unix)]
@@ -468,7 +514,6 @@ fn an_interrupted_film_leaves_what_was_there_and_goes_on() {
 }
 
 /// A film of the rising ball with flags of its own.
-#[cfg(unix)]
 fn command_of(desk: &Desk, rest: &str) -> std::process::Command {
     let mut command = desk.command("build rise.rt");
     command.args(["--sweep", "t = 0 to 1"]).args(rest.split_whitespace());

@@ -104,6 +104,13 @@ fn values_of_flags_show_the_right_form() {
         ("--exposure inf", "number of stops"),
         ("--tonemap filmic", "neutral, none, agx"),
         ("--bits 12", "8, 16"),
+        ("--time 9", "a time with its unit, such as 90s"),
+        ("--time 0s", "a time above 0"),
+        ("--time 8761h", "a year at most, which is 8760h"),
+        ("--checkpoint-every 1e9h", "a year at most"),
+        ("--sweep t=0 --frames 0", "a number of frames from 1 to 1000000, such as 48"),
+        ("--sweep t=0 --frames 1000001", "from 1 to 1000000"),
+        ("--sweep t=0 --frames -1", "from 1 to 1000000"),
         ("--colour", "--colour"),
     ] {
         desk.run(&format!("build ball.rt {flags}")).expect(2, &[said]);

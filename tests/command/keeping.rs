@@ -74,8 +74,10 @@ fn shares_put_together_are_the_picture_of_one_machine() {
     desk.run("merge part1.exr foreign.exr part3.exr -o no.exr")
         .expect(2, &["`foreign.exr` does not go with `part1.exr` and 1 more", "`--seed 0` (this share: 9)"]);
     // The odd one is that which most do not go with, wherever it stands; of two that is nobody.
-    desk.run("merge --partial foreign.exr part1.exr part3.exr -o look.png")
-        .expect(0, &["`foreign.exr` does not go with", "it is left out", "7 samples", "of 2 shares"]);
+    desk.run("merge --partial foreign.exr part1.exr part3.exr -o look.png").expect(
+        0,
+        &["warning: `foreign.exr` does not go with", "it is left out", "7 samples", "of 2 shares"],
+    );
     desk.run("merge --partial foreign.exr part1.exr -o no.exr")
         .expect(2, &["`foreign.exr` and `part1.exr` are shares of different pictures"]);
     // Given again and again it is one share.
@@ -244,6 +246,8 @@ fn what_was_kept_goes_on_to_the_same_bytes() {
     refused("--resume=missing", &["--resume"]);
     let resized = desk.run("build room.rt --size 24x18 -q -o a.exr --resume");
     resized.expect(2, &["another picture: `--size 24x18` (kept: 48x36)\n"]);
+    let reshaped = desk.run("build room.rt --size 47x36 -q -o a.exr --resume");
+    reshaped.expect(2, &["another picture: `--size 47x36` (kept: 48x36)\n"]);
     build(&desk, "-o a.exr --resume=missing").expect(2, &["cannot read `missing`"]);
     desk.put("room.rt", ROOM.replace("power: 90W", "power: 91W"));
     refused("", &["of another picture: other materials"]);
@@ -276,6 +280,71 @@ fn what_was_kept_goes_on_to_the_same_bytes() {
     build(&desk, "-o a.exr --checkpoint=room.rt --resume=never").expect(2, &["would be replaced"]);
     build(&desk, "ball.rt --checkpoint=kept").expect(2, &["several scenes"]);
     build(&desk, "-o a.exr --checkpoint=no/folder").expect(2, &["there is no folder `no`"]);
+}
+
+#[test]
+fn nothing_but_a_checkpoint_is_replaced_by_one() {
+    let desk = desk();
+    build(&desk, "--samples 1 -o a.exr -o tex.png --checkpoint=kept.exr").expect(0, &[]);
+    let images =
+        "sphere { radius: 1m, material: diffuse { color: image(\"tex.png\") } }\nsky { image: \"kept.exr\" }";
+    desk.put("main.rt", format!("import \"ball.rt\" as ball\nball {{ }}\n{images}\n"));
+    desk.put("notes.txt", "a text of years");
+    desk.put("empty", "");
+    let main = |file: &str, rest: &str| {
+        let before = desk.get(file);
+        let said = format!("`{file}` would be replaced by the checkpoint");
+        let ended =
+            desk.run(&format!("build main.rt --size 8x6 --samples 1 -q -o b.png --checkpoint={file} {rest}"));
+        ended.expect(2, &[&said, "name another file: `--checkpoint=FILE`"]);
+        assert!(desk.get(file) == before && !desk.names().contains(&"b.png".into()), "{file} {rest}");
+        ended.stderr
+    };
+    for rest in ["", "--resume=never", "--resume=kept.exr"] {
+        // What is removed is not there any more to be read.
+        for input in ["main.rt", "ball.rt", "tex.png", "kept.exr"] {
+            assert!(!main(input, rest).contains("remove"), "{input} {rest}");
+        }
+        for (other, what) in [("notes.txt", "a text"), ("a.exr", "a picture alone"), ("empty", "empty")] {
+            let said = main(other, rest);
+            assert!(said.contains(what) && said.contains("remove it, or"), "{said}");
+        }
+    }
+    // One that is torn, or of another version, is one all the same.
+    let kept = desk.get("kept.exr");
+    let (form, at) = (b"rtc.saved.version\0string\0\x01\0\0\0", |bytes: &[u8], form: &[u8]| {
+        bytes.windows(form.len()).position(|part| part == form).unwrap() + form.len()
+    });
+    let mut old = kept.clone();
+    old[at(&kept, form)] = b'1';
+    for wrong in [&kept[..kept.len() / 2], &old] {
+        desk.put("wrong", wrong);
+        build(&desk, "-o b.png --checkpoint=wrong").expect(2, &["cannot go on from `wrong`", "replaces it"]);
+        build(&desk, "--samples 1 -o b.png --checkpoint=wrong --resume=never").expect(0, &[]);
+        build(&desk, "--samples 1 -o b.png --checkpoint=wrong").expect(0, &[]);
+    }
+    // A name that nobody chose is of nothing else.
+    desk.put("b.png.checkpoint", "junk");
+    build(&desk, "--samples 1 -o b.png --resume=never").expect(0, &[]);
+    fs::create_dir(desk.path("folder")).unwrap();
+    build(&desk, "-o b.png --resume=folder").expect(2, &["cannot read `folder`: it is not a file"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn samples_that_cannot_be_kept_are_a_warning() {
+    let desk = desk();
+    fs::create_dir(desk.path("store")).unwrap();
+    let flags = "--size 48x36 --time 2s -o a.png --checkpoint=store/kept --checkpoint-every 1spp";
+    let mut child = desk.command(&format!("build room.rt {flags}")).stderr(Stdio::piped()).spawn().unwrap();
+    while !desk.path("store/kept").exists() {
+        assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    fs::rename(desk.path("store"), desk.path("elsewhere")).unwrap();
+    let ended = super::ended(child.wait_with_output().unwrap());
+    ended.expect(0, &["warning: cannot write `store/kept`: there is no folder", "the picture goes on"]);
+    assert!(!ended.stderr.contains("error") && desk.path("a.png").exists(), "{}", ended.stderr);
 }
 
 #[test]

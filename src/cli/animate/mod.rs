@@ -125,13 +125,14 @@ impl Studio<'_, '_> {
         if orders.of > 1 && self.compile(orders.of)?.is_none() {
             return Ok(None);
         }
-        let mut films = self.open(scene)?;
+        let wait = self.context.arguments.keeping.wait.unwrap_or_default();
+        let mut films = patiently(wait, self.context, || self.open(scene))?;
         orders.make_folder()?;
         let lines = if self.context.arguments.quiet { &[][..] } else { &first.notes };
         lines.iter().for_each(|note| self.context.terminal.line(note));
         drop(first);
         // Frames that others are making come last, but for a film, which wants them in turn.
-        let (mut busy, wait) = (vec![], self.context.arguments.keeping.wait.unwrap_or_default());
+        let mut busy = vec![];
         for &number in &orders.numbers {
             let patience = if films.is_empty() { Duration::ZERO } else { wait };
             match self.add(number, patience, &mut films) {
@@ -254,6 +255,7 @@ impl Studio<'_, '_> {
                 }
             }
         }
+        plan.refuse_replacing(&self.disk.read_paths())?;
         let staged = build::stage(self.context, &targets, scene, window)?;
         let name = format!("{} {number}/{}", self.orders.scene.display(), self.orders.of);
         let traced =
@@ -262,7 +264,7 @@ impl Studio<'_, '_> {
             .install(|| build::write(traced.versions(), &traced.facts, &traced.channels, depth, staged))?;
         if keeping.keeps() {
             if let Err(problem) = mark::record(&subject, &targets, interrupt) {
-                terminal.problem(&problem.help("the frame is made; asked for again, it is made anew"));
+                terminal.warning(&problem.help("the frame is made; asked for again, it is made anew"));
             }
             // What is done needs no samples any more.
             let _ = fs::remove_file(keep::beside(&targets)?);

@@ -195,6 +195,11 @@ impl Pattern {
         (self.path(number).to_str() == Some(path)).then_some(number)
     }
 
+    /// Whether there is a folder a frame.
+    pub fn has_folders(&self) -> bool {
+        self.after.contains(std::path::is_separator)
+    }
+
     /// The files of some frames that are there, each with whether it is a link. Of a folder of a million frames that are to be
     /// made it costs nothing. The numbers are in order.
     pub fn there(&self, numbers: &[u32]) -> Vec<(PathBuf, bool)> {
@@ -202,8 +207,7 @@ impl Pattern {
             let link = fs::symlink_metadata(&path).ok()?.is_symlink();
             Some((path, link))
         };
-        if self.after.contains(std::path::is_separator) {
-            // A folder a frame.
+        if self.has_folders() {
             return numbers.iter().filter_map(|number| is_link(self.path(*number))).collect();
         }
         let (folder, _) =

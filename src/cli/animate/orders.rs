@@ -64,6 +64,7 @@ impl Orders {
         let rate = arguments.animating.fps.unwrap_or(default);
         let mut orders = Orders { scene: scene.clone(), of, numbers, rate, films, each, kept: None };
         orders.refuse_misfits(arguments)?;
+        orders.refuse_no_places()?;
         orders.kept = orders.kept_frames(arguments)?;
         Ok(orders)
     }
@@ -126,6 +127,16 @@ impl Orders {
         }
     }
 
+    /// Refuses frames that cannot be written where they go, for want of a folder say. Where only the names of files have the number,
+    /// the first frame tells.
+    fn refuse_no_places(&self) -> Result<(), Problem> {
+        self.each.iter().try_for_each(|pattern| {
+            let count = if pattern.has_folders() { self.numbers.len() } else { 1 };
+            let mut numbers = self.numbers.iter().take(count);
+            numbers.try_for_each(|number| pattern.target(*number)?.refuse_no_place())
+        })
+    }
+
     /// Makes the folder of frames that are kept, if there is one.
     pub fn make_folder(&self) -> Result<(), Problem> {
         let Some(folder) = &self.kept else { return Ok(()) };
@@ -179,12 +190,14 @@ fn refuse_what_films_cannot(arguments: &Build) -> Result<(), Problem> {
     };
     match arguments {
         Build { keeping: Keeping { shard: Some(_), .. }, .. } => {
-            let problem = Problem::new("`--shard` and `--frames` do not go together");
+            let problem =
+                Problem::new("`--shard` is for one picture, and `--sweep` with `--frames` makes a film");
             Err(problem
                 .help("machines share a film by its frames: `--only 1-10`, or `--only auto` in a job array"))
         }
         Build { feedback: true, .. } => {
-            let problem = Problem::new("`--feedback` and `--frames` do not go together");
+            let problem =
+                Problem::new("`--feedback` is for one picture, and `--sweep` with `--frames` makes a film");
             Err(problem.help("it is of one picture: choose a frame with `--set`"))
         }
         Build { keeping: Keeping { checkpoint: Some(Some(file)), .. }, .. } => Err(named(file)),

@@ -17,7 +17,7 @@ pub struct Animating {
 
     /// Makes so many frames. Where their numbers go stands in the name: `-o film.{04}.png`; without, `-o` is one film: apng or
     /// png, webp, or by ffmpeg mp4, mov, mkv or webm.
-    #[arg(long, value_name = "N", requires = "sweep", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_FRAMES)))]
+    #[arg(long, value_name = "N", requires = "sweep", value_parser = frames, allow_negative_numbers = true)]
     pub frames: Option<u32>,
 
     /// Makes only these frames, counted from 1: `1-10,20-`. `auto` makes the one that Slurm's or Kubernetes' index names,
@@ -39,6 +39,11 @@ pub enum Only {
     Auto,
     /// The run that the scheduler says, of so many.
     AutoOf(u32),
+}
+
+fn frames(text: &str) -> Result<u32, String> {
+    let count = text.parse().ok().filter(|count| (1..=MOST_FRAMES).contains(count));
+    count.ok_or_else(|| format!("a number of frames from 1 to {MOST_FRAMES}, such as 48"))
 }
 
 fn only(text: &str) -> Result<Only, String> {

@@ -21,7 +21,7 @@ pub struct Halting {
 /// How work is kept.
 #[derive(Args)]
 pub struct Keeping {
-    /// Keeps the samples in this file, beside the picture if none is named, every now and then, at the end, and when the
+    /// Keeps the samples in this file, or if none is named beside the picture that the first `-o` names, every now and then, at the end, and when the
     /// process is asked to end. Run again, it goes on from there; with a higher limit it adds samples to a picture that
     /// was done.
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
@@ -38,7 +38,7 @@ pub struct Keeping {
         default_missing_value = "auto", value_parser = resume)]
     pub resume: Option<Resume>,
 
-    /// Waits for so long while another process is writing the same picture, share or frame, and then goes on from what that one
+    /// Waits for so long while another process is writing the same picture, share, frame or film, and then goes on from what that one
     /// has left. Without it, that is an error.
     #[arg(long, value_name = "TIME", value_parser = time)]
     pub wait: Option<Duration>,
@@ -92,16 +92,21 @@ pub enum Shard {
     AutoOf(u32),
 }
 
+/// A year.
+const LONGEST: Duration = Duration::from_secs(365 * 24 * 3600);
+
 pub fn time(text: &str) -> Result<Duration, String> {
     let wanted = || "a time with its unit, such as 90s, 10min or 2h".to_string();
     let units = [("ms", 1e-3), ("min", 60.0), ("s", 1.0), ("h", 3600.0)];
     let read = |(unit, seconds): (&str, f64)| Some(f64::from_str(text.strip_suffix(unit)?).ok()? * seconds);
     let seconds = units.into_iter().find_map(read).ok_or_else(wanted)?;
-    // A year is long enough.
-    if seconds > 0.0 && seconds <= 31_536_000.0 {
-        Ok(Duration::from_secs_f64(seconds))
-    } else {
-        Err(wanted())
+    match seconds {
+        seconds if seconds > LONGEST.as_secs_f64() => {
+            Err(format!("a time of a year at most, which is {}h", LONGEST.as_secs() / 3600))
+        }
+        seconds if seconds > 0.0 => Ok(Duration::from_secs_f64(seconds)),
+        seconds if seconds <= 0.0 => Err("a time above 0, such as 90s".into()),
+        _ => Err(wanted()),
     }
 }
 
