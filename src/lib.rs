@@ -78,7 +78,7 @@ use files::{Contents, Files};
 use ide::{Analysis, Stop, Study};
 use import::Imported;
 use inventory::Inventory;
-use lower::{Decoded, Lowered, Marks, Meshes, Overrides, Places};
+use lower::{Decoded, Lowered, Marks, Meshes, Overrides, Places, Vantage};
 use render::feedback::Feedback;
 use scene::Scene;
 use source::{Source, Sources};
@@ -102,6 +102,8 @@ pub struct Compiled {
     pub inventory: Inventory,
     /// Where those parts of the scene came from that are no primitives.
     pub marks: Marks,
+    /// Where the camera stands and looks; none where that is not known.
+    pub vantage: Option<Vantage>,
     /// Where settings stand that only a finished picture can judge.
     places: Places,
     /// The source that was compiled.
@@ -192,6 +194,11 @@ impl<'f> Series<'f> {
         let is_int =
             |name: &str| inventory.params.iter().any(|param| param.name == name && param.ty == "int");
         check::swept_words(&self.options.sweep, moment, is_int)
+    }
+
+    /// Has cameras stand and look so from now on, as far as the source leaves that open.
+    pub fn hold(&mut self, vantage: Vantage) {
+        self.options.overrides.vantage = Some(vantage);
     }
 
     /// Compiles it at a moment, as [`compile`] does.
@@ -331,6 +338,7 @@ impl World<'_> {
             main: self.main,
             allows: program.allows,
             marks: lowered.marks,
+            vantage: lowered.vantage,
             places: lowered.places,
         }
     }
@@ -359,6 +367,7 @@ impl Compiled {
             diagnostics: vec![],
             allows: vec![],
             marks: Marks::default(),
+            vantage: None,
             places: Places::default(),
         }
     }

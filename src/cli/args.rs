@@ -288,17 +288,16 @@ impl Taking {
     pub fn overrides(&self) -> Overrides {
         Overrides {
             camera: self.camera.clone(),
-            every_camera: false,
             size: self.size,
             samples: self.samples,
             noise: self.noise,
-            limited: false,
             seed: self.seed,
             exposure: self.exposure.map(|exposure| match exposure {
                 Exposure::Auto => None,
                 Exposure::Stops(stops) => Some(stops),
             }),
             tonemap: self.look.tonemap,
+            ..Overrides::default()
         }
     }
 }

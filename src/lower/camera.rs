@@ -17,6 +17,17 @@ const MARGIN: f64 = 1.08;
 /// The greatest cosine between two unit vectors that counts as a right angle: rounding.
 const UPRIGHT: f64 = 2e-15;
 
+/// What a camera that leaves open where it stands, or what it looks at, takes for it.
+#[derive(Clone, Copy, Debug)]
+pub struct Vantage {
+    /// Where it stands.
+    pub from: DVec3,
+    /// What it looks at.
+    pub look: DVec3,
+    /// Whether either was chosen for the user.
+    pub chosen: bool,
+}
+
 impl Lowering<'_> {
     /// Finds the cameras that do not take the picture, where they are looked at, and reports what is wrong with them.
     pub(super) fn other_cameras(&mut self, blocks: &Blocks, size: Option<[u32; 2]>) {
@@ -64,13 +75,16 @@ impl Lowering<'_> {
         self.out.marks.look = made.given(camera::LOOK).map(|(_, span)| span);
 
         let (center, radius) = self.middle();
-        let look = match made.given(camera::LOOK) {
-            Some((aim, span)) => self.aim(aim, span)?,
-            None => center,
+        let vantage = self.overrides.vantage;
+        let look = match (made.given(camera::LOOK), vantage) {
+            (Some((aim, span)), _) => self.aim(aim, span)?,
+            (None, Some(Vantage { look, .. })) => look,
+            (None, None) => center,
         };
-        let position = match made.given(camera::FROM) {
-            Some((from, _)) => from,
-            None => {
+        let position = match (made.given(camera::FROM), vantage) {
+            (Some((from, _)), _) => from,
+            (None, Some(Vantage { from, .. })) => from,
+            (None, None) => {
                 let away = match projection {
                     Projection::Perspective => radius / sin(atan2(half_extent.min_element(), 1.0)),
                     // Far enough for everything to be in front; the width was chosen.
@@ -96,6 +110,8 @@ impl Lowering<'_> {
             Some(lens) => self.opening(lens.fields(), position, forward, look)?,
             None => (0.0, 1.0),
         };
+        let chosen = made.given(camera::FROM).is_none() || made.given(camera::LOOK).is_none();
+        self.out.vantage = Some(Vantage { from: position, look, chosen });
         if self.overrides.exposure.is_none() {
             self.out.places.exposure = made.given(camera::EXPOSURE).map(|(_, span)| span);
         }

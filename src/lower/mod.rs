@@ -25,6 +25,7 @@ use crate::scene::{
 use crate::schema::{self, Category, DEFAULT_SAMPLES, KindId, light, render, sun};
 use crate::source::Sources;
 use crate::span::{SourceId, Span};
+pub use camera::Vantage;
 pub use decoded::Decoded;
 pub use marks::{Marks, MaterialMarks};
 use material::Materials;
@@ -42,6 +43,8 @@ pub struct Overrides {
     pub camera: Option<String>,
     /// Whether all cameras are looked at, and so none of several has to be chosen.
     pub every_camera: bool,
+    /// Where the camera stands and looks as far as the file leaves that open.
+    pub vantage: Option<Vantage>,
     /// Width and height in pixels.
     pub size: Option<[u32; 2]>,
     /// Samples a pixel, in place of the file's samples or noise.
@@ -71,6 +74,8 @@ pub struct Lowered {
     pub places: Places,
     /// Where the rest of the scene stands.
     pub marks: Marks,
+    /// Where the camera stands and looks.
+    pub vantage: Option<Vantage>,
     /// The cameras that do not take the picture, each with its places, where they are looked at.
     pub others: Vec<(Camera, Marks)>,
     /// Where its pictures and meshes were read.
@@ -392,8 +397,7 @@ impl<'a> Lowering<'a> {
         };
         let pixels = u64::from(size[0]) * u64::from(size[1]);
         if pixels > MAX_PIXELS {
-            let span = given.map(|(_, span)| span);
-            self.report(errors::too_many_pixels(size, span));
+            self.report(errors::too_many_pixels(size, given.map(|(_, span)| span)));
             return None;
         }
         Some(size)
@@ -472,8 +476,7 @@ impl<'a> Lowering<'a> {
 
 /// A thing of a kind as if it had been written with nothing in it.
 fn plain(kind: crate::schema::KindId) -> crate::eval::Made {
-    let nowhere = crate::span::Span::new(crate::span::SourceId(0), 0, 0);
-    crate::eval::Made::new(kind, nowhere)
+    crate::eval::Made::new(kind, Span::new(SourceId(0), 0, 0))
 }
 
 fn default_size(things: &Things) -> [u32; 2] {

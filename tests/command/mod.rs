@@ -3,6 +3,7 @@
 mod animation;
 mod bad_input;
 mod denoise;
+mod framing;
 mod keeping;
 mod layout;
 mod lsp;

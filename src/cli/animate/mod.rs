@@ -1,8 +1,8 @@
 //! `rtc build --sweep … --frames N`: films.
 //!
-//! A frame is the picture that `rtc build --set` makes of the values it has, but for the exposure where the camera leaves it
-//! open: that is chosen once, by the first frame of the whole film, so that a film does not flicker, whoever makes which of its
-//! frames. What frames have in common is read, parsed, decoded and built once.
+//! A frame is the picture that `rtc build --set` makes of the values it has, but for what the camera leaves open, its place and
+//! the exposure: that is chosen once, by the first frame of the whole film, so that a film neither jumps nor flickers, whoever
+//! makes which of its frames. What frames have in common is read, parsed, decoded and built once.
 //!
 //! | module | what it holds |
 //! |---|---|
@@ -72,6 +72,7 @@ fn film(context: &Context, orders: &Orders, messenger: &mut Messenger) -> Result
         series,
         messenger,
         said: BTreeSet::new(),
+        stands: false,
         exposure: None,
         before: Before::default(),
         worst: Exit::Done,
@@ -97,6 +98,8 @@ struct Studio<'a, 'm> {
     messenger: &'a mut Messenger<'m>,
     /// What was said, of which frame ever: its code and place.
     said: BTreeSet<(&'static str, String, u32)>,
+    /// Whether the first frame chose, for all, where the camera stands or looks.
+    stands: bool,
     /// In stops, where the first frame chose it for all.
     exposure: Option<f64>,
     before: Before,
@@ -120,6 +123,10 @@ impl Studio<'_, '_> {
         let Some(first) = self.compile(1)? else { return Ok(None) };
         orders.refuse_inputs(&self.disk.read_paths())?;
         let Some(scene) = &first.scene else { return Ok(None) };
+        if let Some(vantage) = first.vantage {
+            self.series.hold(vantage);
+            self.stands = vantage.chosen;
+        }
         self.choose_exposure(scene);
         // Better now than after a night.
         if orders.of > 1 && self.compile(orders.of)?.is_none() {
@@ -297,11 +304,12 @@ impl Studio<'_, '_> {
                 "; exposure chosen by frame 1 for all; to keep it, write `exposure: {stops}` in the camera"
             )
         });
+        let camera = if self.stands { "; camera placed by frame 1 for all" } else { "" };
         let (made, of) = (self.orders.numbers.len(), self.orders.of);
         let unit = if of == 1 { "frame" } else { "frames" };
         let which =
             if made == of as usize { format!("{of} {unit}") } else { format!("{made} of {of} {unit}") };
-        terminal.line(&format!("{which} in {}{exposure}", duration(start.elapsed())));
+        terminal.line(&format!("{which} in {}{camera}{exposure}", duration(start.elapsed())));
     }
 }
 
