@@ -232,7 +232,7 @@ impl<'a> Checker<'a> {
             return (Expr::invalid(value.span), false);
         }
         if let Type::Made(making) = ty {
-            self.complete(making, value.span);
+            self.complete(making, value.span, super::make::body_of(value));
         }
         (checked, true)
     }
