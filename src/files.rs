@@ -72,6 +72,11 @@ pub enum FileError {
 impl FileError {
     /// What is said of it. `written` is the path as it stands at `span` in a source.
     pub fn diagnostic(&self, written: &str, span: Span) -> Diagnostic {
+        if written.trim_ascii().is_empty() {
+            return Diagnostic::new(Code::E0501, "the path is empty", span)
+                .at("names no file")
+                .help("write the path of a file, as it counts from the folder of this one");
+        }
         let (code, message, label) = match self {
             FileError::Missing => (Code::E0501, format!("there is no file `{written}`"), "not found"),
             FileError::Outside => {

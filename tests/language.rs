@@ -1,10 +1,12 @@
 //! What the language means, seen in the scenes it makes.
 
 use proptest::prelude::*;
+use rt_lang::diagnostic::Code;
 use rt_lang::files::{FileError, FilePath, Files, NoFiles};
 use rt_lang::scene::Scene;
+use rt_lang::schema::{Category, Field, FieldType, KINDS, Kind, KindId, PLACED, Preset};
 use rt_lang::source::{Source, Sources};
-use rt_lang::{Options, compile};
+use rt_lang::{Options, compile, units};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
@@ -177,4 +179,92 @@ fn tables_give_rows() {
     let scene = scene_of(&files, text, &[]);
     let bounds = scene.primitives[1].shape.bounds().unwrap();
     assert!((bounds.max.x - 0.016).abs() < 1e-12, "{bounds:?}");
+}
+
+/// A value that a field of this type may have, as far as one can be told from the type.
+fn fitting(field: &Field) -> String {
+    fn of(ty: FieldType) -> String {
+        let tuple = |count: usize, dim: units::Dim| {
+            format!("({}){}", ["0", "1", "0"][..count.min(3)].join(", "), dim.example_unit())
+        };
+        match ty {
+            FieldType::Scalar(dim) => format!("1{}", dim.example_unit()),
+            FieldType::Int => "1".into(),
+            FieldType::Bool => "true".into(),
+            FieldType::Color | FieldType::Paint => "red".into(),
+            FieldType::Text => "\"x.ply\"".into(),
+            FieldType::Tuple(count, dim) => tuple(count, dim),
+            FieldType::IntTuple(_) => "(16, 9)".into(),
+            FieldType::Transform => "turn(y: 45deg)".into(),
+            FieldType::Made(Category::Material) => "mirror {}".into(),
+            FieldType::Made(_) | FieldType::Target => "ball".into(),
+            FieldType::Part(kind) => format!("{kind} {{ focal: 50mm }}"),
+            FieldType::Named(_) => "eye".into(),
+            FieldType::Choice(words) => words[0].name.into(),
+            FieldType::OneOf(types) => of(types[0]),
+        }
+    }
+    match field.default {
+        Preset::Value(value) => value.into(),
+        Preset::Required | Preset::Absent(_) => of(field.ty),
+    }
+}
+
+/// Whatever holds entries, with every field that any kind knows: it is said to be unknown where the kind has none of the
+/// name, and nowhere else.
+#[test]
+fn every_field_in_every_body() {
+    let all = KINDS.iter().flat_map(|kind| kind.fields).chain(PLACED);
+    let fields: BTreeMap<&str, &Field> = all.map(|field| (field.name, field)).collect();
+    let kinds = (0..KINDS.len()).map(|index| KindId(index as u8));
+    // Each with `…` for the field, and the fields that it has.
+    let mut bodies: Vec<(String, Vec<&Field>)> = vec![];
+    for id in kinds {
+        let Kind { name, category, .. } = id.get();
+        let mut written = vec![format!("let a = {name} {{ … }}\nlet b = a.‹›")];
+        match category {
+            Category::Material => written.push(format!("sphere {{ radius: 1m, material: {name} {{ … }} }}")),
+            _ => {
+                written.push(format!("{name} a {{ … }}\nlet b = a.‹›"));
+                written.push(format!("let a = {name} {{}}\ngroup {{ a {{ … }} }}"));
+            }
+        }
+        bodies.extend(written.into_iter().map(|text| (text, id.fields().collect())));
+    }
+    for text in
+        ["part a { … }\na {}", "part a {}\na b { … }\nlet c = b.‹›", "part a { part b { … } b {} }\na {}"]
+    {
+        bodies.push((text.into(), PLACED.iter().collect()));
+    }
+    for text in ["for i in [1] { … }", "if true { … }", "if false {} else { … }", "part a { if true { … } }"]
+    {
+        bodies.push((text.into(), vec![]));
+    }
+    let mut wrong = vec![];
+    for (body, own) in &bodies {
+        for (name, some) in &fields {
+            let own = own.iter().find(|field| field.name == *name);
+            let field = format!("{name}: {}", fitting(own.unwrap_or(some)));
+            // Also twice, which is another slip.
+            for field in
+                [field.clone(), format!("{field}, {field}")].iter().take(1 + usize::from(own.is_some()))
+            {
+                let text = body.replace('…', field).replace('‹', name).replace('›', "");
+                let text = format!("sphere ball {{ radius: 1m }}\ncamera eye {{}}\n{text}\n");
+                let mut sources = Sources::default();
+                let id = sources.add(Source::new("main.rt", text.clone()));
+                let compiled = compile(&NoFiles, &mut sources, id, &Options::default());
+                let is_unknown = compiled.diagnostics.iter().any(|said| said.code == Code::E0301);
+                if is_unknown == own.is_some() {
+                    wrong.push(text);
+                }
+            }
+        }
+    }
+    assert!(
+        wrong.is_empty(),
+        "{}:\n{}",
+        wrong.len(),
+        wrong.iter().take(20).cloned().collect::<Vec<_>>().join("\n")
+    );
 }

@@ -59,9 +59,12 @@ impl<'a> Checker<'a> {
         let scope = self.declare(items, place, span);
         let item = |(name, &known): (&SmolStr, &usize)| (name.clone(), scope.known[known].item);
         let declared = scope.names.iter().map(item);
-        // A loop without a body does not declare its variable for its own list.
+        // A loop without a body does not declare its variable for its own list, and nothing declares what a kind is called:
+        // whoever uses that means the kind.
+        let declares =
+            |name: &str, item: usize| items[item].name().is_some() && crate::schema::kind(name).is_none();
         let declared: BTreeMap<SmolStr, usize> =
-            declared.filter(|(_, item)| items[*item].name().is_some()).collect();
+            declared.filter(|(name, item)| declares(name, *item)).collect();
         let settings = if place == Place::Main { self.settings } else { &[] };
         let setting = |item: &Item| {
             let Item::Statement(ast::Statement { kind: Tree::Param { .. }, .. }) = item else { return None };
@@ -283,7 +286,7 @@ impl<'a> Checker<'a> {
             Kind::BuiltIn(kind) if category == Category::Block && inner => {
                 self.report(errors::block_inside(&construct.kind, kind))
             }
-            _ => self.complete(making, span),
+            _ => self.complete(making, span, Some(construct.body.span)),
         }
         (StatementKind::Draw { slot, make: Box::new(make) }, Type::Thing(making))
     }

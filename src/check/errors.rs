@@ -379,6 +379,22 @@ pub(super) fn missing(kind: KindId, field: &Field, place: Span) -> Diagnostic {
         .help(format!("add `{}: {}`. {}", field.name, example(field), field.doc))
 }
 
+/// Offers to write a field that is needed into a body.
+pub(super) fn offer_field(diagnostic: Diagnostic, field: &Field, body: Span, text: &str) -> Diagnostic {
+    let inner = text.strip_prefix('{').and_then(|rest| rest.strip_suffix('}'));
+    let (Some(inner), value) = (inner, example(field)) else { return diagnostic };
+    // What only the writer knows is not made up.
+    if value.contains('…') {
+        return diagnostic;
+    }
+    let given = format!("{}: {value}", field.name);
+    let edit = match inner.trim().is_empty() {
+        true => (body, format!("{{ {given} }}")),
+        false => (Span { start: body.start + 1, end: body.start + 1, ..body }, format!(" {given},")),
+    };
+    diagnostic.offer(format!("add `{given}`"), vec![edit])
+}
+
 /// A value as the field wants it, to show.
 fn example(field: &Field) -> String {
     if let Preset::Value(value) = field.default {

@@ -33,12 +33,17 @@ impl Checker<'_> {
         }
     }
 
-    /// Everything that must be given is. `place` is where the thing is used.
-    pub(super) fn complete(&mut self, making: Making, place: Span) {
+    /// Everything that must be given is. `place` is where the thing is used, `body` where it is made there.
+    pub(super) fn complete(&mut self, making: Making, place: Span, body: Option<Span>) {
         let Kind::BuiltIn(kind) = making.kind else { return };
         for (index, field) in kind.fields().enumerate() {
             if field.default == Preset::Required && !making.given.has(index) {
-                self.report(errors::missing(kind, field, place));
+                let diagnostic = errors::missing(kind, field, place);
+                let body = body.map(|body| (body, self.text(body)));
+                self.report(match body {
+                    Some((body, text)) => errors::offer_field(diagnostic, field, body, text),
+                    None => diagnostic,
+                });
             }
         }
         if let Some(diagnostic) = broken_rule(kind, making.given, place) {

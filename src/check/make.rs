@@ -276,7 +276,7 @@ impl Checker<'_> {
             places[*index] = Some(name.span);
             let (part, ty) = self.make(construct, None);
             if let Type::Made(part) = ty {
-                self.complete(part, name.span);
+                self.complete(part, name.span, Some(construct.body.span));
             }
             let kind = ExprKind::Make(Box::new(part));
             make.fields.push((FieldPlace::Index(*index), Expr { kind, span: construct.span }));
@@ -380,9 +380,17 @@ impl Checker<'_> {
             return Expr::invalid(value.span);
         }
         if let Type::Made(making) = ty {
-            self.complete(making, value.span);
+            self.complete(making, value.span, body_of(value));
         }
         checked
+    }
+}
+
+/// Where the braces of a value are that is made on the spot.
+pub(super) fn body_of(value: &ast::Expr) -> Option<Span> {
+    match &value.kind {
+        ast::ExprKind::Construct(construct) => Some(construct.body.span),
+        _ => None,
     }
 }
 

@@ -92,7 +92,7 @@ impl<'a> Checker<'a> {
     /// What a part says of all its members: their material, and where they stand.
     fn part_fields(&mut self, fields: &[&ast::Field]) -> Vec<(usize, Expr)> {
         let mut found: Vec<(usize, Expr)> = vec![];
-        let mut first: [Option<crate::span::Span>; 3] = [None; 3];
+        let mut first = [None; PLACED.len()];
         for field in fields {
             let Some(index) = PLACED.iter().position(|placed| placed.name == field.name.text) else {
                 self.report(errors::field_of_part(&field.name));
@@ -232,7 +232,7 @@ impl<'a> Checker<'a> {
             return (Expr::invalid(value.span), false);
         }
         if let Type::Made(making) = ty {
-            self.complete(making, value.span);
+            self.complete(making, value.span, super::make::body_of(value));
         }
         (checked, true)
     }

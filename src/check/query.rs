@@ -42,7 +42,7 @@ impl Checker<'_> {
     fn complete_all(&mut self, values: &[Expr], types: &[Type]) {
         for (value, ty) in values.iter().zip(types) {
             if let Type::Made(making) = ty {
-                self.complete(*making, value.span);
+                self.complete(*making, value.span, None);
             }
         }
     }
@@ -113,7 +113,7 @@ impl Checker<'_> {
         if let Type::Made(Making { kind: Kind::Material | Kind::Thing, .. }) = ty {
             for (value, ty) in [(&then, &a), (&otherwise, &b)] {
                 if let Type::Made(making) = ty {
-                    self.complete(*making, value.span);
+                    self.complete(*making, value.span, None);
                 }
             }
         }

@@ -28,12 +28,13 @@ fn list() -> String {
     Code::ALL.iter().map(line).collect()
 }
 
-/// The code that is asked for: as written, in small letters, by its digits or by its title.
+/// The code that is asked for: as written, in small letters, by its digits, by its title, or as `@allow` names it.
 fn find(asked: &str) -> Result<Code, Problem> {
     let asked = asked.trim();
     let same = |code: &&Code| {
         let name = code.as_str();
-        name.eq_ignore_ascii_case(asked) || name[1..] == *asked || code.title().eq_ignore_ascii_case(asked)
+        let is_title = code.title().eq_ignore_ascii_case(asked) || code.name() == asked;
+        name.eq_ignore_ascii_case(asked) || name[1..] == *asked || is_title
     };
     Code::ALL.iter().find(same).copied().ok_or_else(|| unknown(asked))
 }

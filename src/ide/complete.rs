@@ -35,6 +35,7 @@ pub fn complete(
         Spot::Warning => list.warnings(),
         Spot::Type => list.types(),
         Spot::Keyword(words) => words.iter().for_each(|word| list.word(word)),
+        Spot::Branch => list.branch(),
         Spot::Path(language) => list.paths(files, source, *language),
         Spot::Entry | Spot::Value(_) | Spot::Unit(_) | Spot::Member(_) => {
             let found = typing(files, source, &cursor, limits, stop, |typing| {

@@ -1,7 +1,8 @@
 //! Where the cursor stands in a text that is being typed: by its words and marks alone, since the rest may make no sense.
 
 use super::lex::{Lexeme, lex, split};
-use crate::schema::{FieldType, KINDS};
+use crate::check::Function;
+use crate::schema::{FieldType, KINDS, PLACED};
 use std::ops::Range;
 
 /// Where the cursor stands.
@@ -15,6 +16,8 @@ pub(super) struct Cursor<'t> {
     pub(super) open: Vec<usize>,
     /// The words and marks of the entry before the word.
     pub(super) entry: Vec<Range<usize>>,
+    /// What stands before the entry, such as `@off`.
+    prefixes: Vec<Range<usize>>,
     /// The word or mark before the innermost bracket.
     pub(super) opened_by: Option<Range<usize>>,
 }
@@ -40,8 +43,10 @@ pub(super) enum Spot {
     Warning,
     /// The path of a file, which begins behind its quote; whether it is one of the language.
     Path(bool),
-    /// One of these words of the language.
-    Keyword(&'static [&'static str]),
+    /// One of these words or marks of the language.
+    Keyword(Vec<&'static str>),
+    /// What is done where a condition does not hold.
+    Branch,
 }
 
 /// A piece of the text with its place.
@@ -64,8 +69,15 @@ impl<'t> Cursor<'t> {
             before.push((lexeme, range));
         }
         before.retain(|(lexeme, _)| *lexeme != Lexeme::Comment);
-        let none =
-            Cursor { text, word: at..at, spot: Spot::Nothing, open: vec![], entry: vec![], opened_by: None };
+        let none = Cursor {
+            text,
+            word: at..at,
+            spot: Spot::Nothing,
+            open: vec![],
+            entry: vec![],
+            prefixes: vec![],
+            opened_by: None,
+        };
         let word = match here {
             None => at..at,
             Some((Lexeme::Word | Lexeme::Prefix, range)) => range,
@@ -154,6 +166,7 @@ impl<'t> Cursor<'t> {
         let entry: Vec<Range<usize>> =
             self.entry_of(&before[first..]).iter().map(|(_, range)| range.clone()).collect();
         self.entry = self.without_prefixes(&entry).to_vec();
+        self.prefixes = entry[..entry.len() - self.entry.len()].to_vec();
     }
 
     /// The last entry of those of a body.
@@ -215,6 +228,11 @@ impl<'t> Cursor<'t> {
         self.entry.get(index).map_or("", |range| &self.text[range.clone()])
     }
 
+    /// Whether this stands before the entry.
+    pub(super) fn has_prefix(&self, prefix: &str) -> bool {
+        self.prefixes.iter().any(|range| self.text[range.clone()] == *prefix)
+    }
+
     /// Where the name stands that the entry declares, if it does.
     pub(super) fn declares(&self) -> Option<usize> {
         let declares = ["let", "material", "param", "fn", "for"].contains(&self.piece(0));
@@ -254,16 +272,25 @@ impl<'t> Cursor<'t> {
             [] => Spot::Entry,
             ["param", _, ":"] => Spot::Type,
             ["param", _, ":", ty @ ..] if ty.contains(&"=") && after_operand => {
-                Spot::Keyword(&["in", "to", "and", "or"])
+                let within = (!ty.contains(&"in")).then_some("in");
+                Spot::Keyword(within.into_iter().chain(self.behind_value()).collect())
             }
             ["param", _, ":", ty @ ..] if ty.contains(&"=") => Spot::Value(None),
             ["param", _, ":", "["] => Spot::Type,
+            ["param", _, ":", ..] if operand => Spot::Keyword(vec!["="]),
             ["fn", .., "->"] => Spot::Type,
+            ["fn", _, "(", head @ ..] if operand && !head.contains(&"=") => {
+                Spot::Keyword(vec![if head.contains(&"->") { "=" } else { "->" }])
+            }
             ["import"] => Spot::Nothing,
-            ["import", _] => Spot::Keyword(&["as"]),
-            ["for", _] => Spot::Keyword(&["in"]),
+            ["import", _] => Spot::Keyword(vec!["as"]),
+            ["for", _] => Spot::Keyword(vec!["in"]),
+            ["for", _, "in", .., "}"] => Spot::Nothing,
+            ["if", .., "}", "else"] => Spot::Branch,
+            ["if", .., "}"] if self.is_alternative() => Spot::Nothing,
+            ["if", .., "}"] => Spot::Keyword(vec!["else"]),
             ["for", _, "in", ..] | ["if" | "assert", ..] if after_operand => {
-                Spot::Keyword(&["and", "or", "to", "then", "else"])
+                Spot::Keyword(self.behind_value())
             }
             ["for", _, "in", ..] | ["if" | "assert", ..] => Spot::Value(None),
             ["let" | "material" | "fn", _, ..] if begun.contains(&"=") && !after_operand => {
@@ -271,7 +298,7 @@ impl<'t> Cursor<'t> {
             }
             [_, ":", ..] if !after_operand => Spot::Value(field),
             [_, ":", ..] | ["let" | "material" | "fn", ..] if begun.len() > 2 && after_operand => {
-                Spot::Keyword(&["and", "or", "to", "then", "else"])
+                Spot::Keyword(self.behind_value())
             }
             _ => Spot::Nothing,
         }
@@ -358,8 +385,48 @@ impl<'t> Cursor<'t> {
             // Inside a call another type is wanted than outside.
             true if is_name(opened_by) => Spot::Value(None),
             true => Spot::Value(field),
-            false => Spot::Keyword(&["and", "or", "to", "then", "else"]),
+            false => Spot::Keyword(self.behind_value()),
         }
+    }
+
+    /// The words and marks that can stand behind a value: those that the innermost brackets lack, and operators.
+    fn behind_value(&self) -> Vec<&'static str> {
+        let inner = self.open.last().filter(|open| self.text.as_bytes()[**open] != b'{');
+        let inner = inner.map_or(0, |open| open + 1);
+        let begun: Vec<&str> = self
+            .entry
+            .iter()
+            .filter(|piece| piece.start >= inner)
+            .map(|piece| &self.text[piece.clone()])
+            .collect();
+        let count = |word: &str| begun.iter().filter(|piece| **piece == word).count();
+        // That of a statement has braces.
+        let chooses = self.piece(0) == "if" && inner == 0;
+        let (ifs, thens) = (count("if") - usize::from(chooses), count("then"));
+        let is_field = inner == 0 && self.piece(1) == ":";
+        let places = is_field
+            && PLACED.iter().any(|field| field.ty == FieldType::Transform && field.name == self.piece(0))
+            || begun
+                .iter()
+                .any(|piece| Function::ALL.iter().any(|known| known.name() == *piece && gives_place(known)));
+        let operators: &[&str] = if places { &["|>"] } else { &["and", "or", "to"] };
+        let lacks = [("then", thens < ifs), ("else", count("else") < thens)];
+        let lacks = lacks.into_iter().filter(|(_, lacks)| *lacks).map(|(word, _)| word);
+        operators.iter().copied().chain(lacks).collect()
+    }
+
+    /// Whether the braces that end the entry are those of `else`.
+    fn is_alternative(&self) -> bool {
+        let mut depth = 0usize;
+        let begins = (0..self.entry.len()).rev().find(|index| {
+            match self.piece(*index) {
+                "}" => depth += 1,
+                "{" => depth -= 1,
+                _ => {}
+            }
+            depth == 0
+        });
+        begins.and_then(|index| index.checked_sub(1)).is_some_and(|before| self.piece(before) == "else")
     }
 
     /// The text as it would be if something sound stood in place of the word, with the brackets around it closed. All before
@@ -416,6 +483,11 @@ impl<'t> Cursor<'t> {
     }
 }
 
+/// Whether a function gives a placement.
+fn gives_place(function: &Function) -> bool {
+    function.ways().iter().any(|way| way.gives == "transform")
+}
+
 /// Whether this is the name of something that can be called.
 fn is_name(word: &str) -> bool {
     word.starts_with(|c: char| c.is_alphabetic() || c == '_')
@@ -423,66 +495,4 @@ fn is_name(word: &str) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The spot of a text with `|` where the cursor is, and the text as it is mended.
-    fn spot(marked: &str) -> (Spot, String) {
-        let at = marked.find('|').unwrap();
-        let text = marked.replacen('|', "", 1);
-        let cursor = Cursor::new(&text, at);
-        (cursor.spot.clone(), cursor.mended())
-    }
-
-    #[test]
-    fn the_place_tells_what_may_stand_there() {
-        let value = |field: &str| Spot::Value(Some(field.to_string()));
-        for (text, wanted) in [
-            ("|", Spot::Entry),
-            ("sphere { ra|", Spot::Entry),
-            ("sphere { radius: 1m, |", Spot::Entry),
-            ("sphere {\n  radius: 1m\n  |\n}", Spot::Entry),
-            ("sphere { material: |", value("material")),
-            ("sphere { material: di|\nplane { }", value("material")),
-            ("sphere { at: (0, |", value("at")),
-            ("sphere { at: (0, cos(|", Spot::Value(None)),
-            ("sphere { radius: 8|", Spot::Unit(Some("radius".into()))),
-            ("sphere { radius: 8m|", Spot::Unit(Some("radius".into()))),
-            ("sphere { at: (0, 1, 0)c|", Spot::Unit(Some("at".into()))),
-            ("let a = |", Spot::Value(None)),
-            ("let |", Spot::Nothing),
-            ("sphere ba|", Spot::Nothing),
-            ("material a = |", value("material")),
-            ("param a: |", Spot::Type),
-            ("param a: int =\nparam b: |", Spot::Type),
-            ("sphere { radius: 1m +\n material: |", value("material")),
-            ("param a: length = |", Spot::Value(None)),
-            ("fn f(a: |", Spot::Type),
-            ("fn f(a: length) -> |", Spot::Type),
-            ("for i |", Spot::Keyword(&["in"])),
-            ("for i in |", Spot::Value(None)),
-            ("assert |", Spot::Value(None)),
-            ("import \"|", Spot::Path(true)),
-            ("mesh { file: \"a/|\" }", Spot::Path(false)),
-            ("// |", Spot::Nothing),
-            ("@|", Spot::Prefix),
-            ("@off |", Spot::Entry),
-            ("@allow(|", Spot::Warning),
-            ("@allow(\nparam a: |", Spot::Type),
-            ("sphere { at: (0,\nmaterial a = |", value("material")),
-            ("camera { look: a.|", Spot::Member(16)),
-        ] {
-            assert_eq!(spot(text).0, wanted, "{text}");
-        }
-    }
-
-    #[test]
-    fn what_is_open_is_closed_before_what_follows() {
-        assert_eq!(spot("sphere { ra|\nplane { }").1, "sphere { }\nplane { }");
-        assert_eq!(spot("sphere { at: (0, |\nplane { }").1, "sphere { at: (0, 0)}\nplane { }");
-        assert_eq!(
-            spot("part a {\n  sphere { | }\n  let b = 1\n}").1,
-            "part a {\n  sphere {  }\n  let b = 1\n}"
-        );
-    }
-}
+mod tests;

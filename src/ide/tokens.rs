@@ -121,7 +121,9 @@ impl<'a> Words<'a> {
             None if self.types.contains(&start) => token(TokenKind::Type),
             None if RESERVED.contains(&word) => token(TokenKind::Keyword),
             // Behind parentheses a unit stands by itself.
-            None if text[..start].ends_with([')', ']']) => token(TokenKind::Unit),
+            None if text[..start].ends_with([')', ']']) => {
+                Token { built_in: false, ..token(TokenKind::Unit) }
+            }
             None => return None,
         })
     }

@@ -1,7 +1,7 @@
 //! A text that is being typed, mended at the cursor and checked: what completion and signatures are found from.
 
 use super::cursor::{Cursor, Spot};
-use super::walk::Piece;
+use super::walk::{Piece, name_of};
 use super::{Analysis, Stop, Study};
 use crate::check::{self, Filled, Kind, Program, Type};
 use crate::eval::Limits;
@@ -75,6 +75,20 @@ impl Typing<'_> {
             filled.span.source == self.analysis.main && filled.span.range().start == *brace
         };
         self.analysis.study.notes.bodies.iter().rev().find(here)
+    }
+
+    /// Where the names are of the statements in whose braces the cursor stands.
+    pub(super) fn around(&self) -> Vec<Span> {
+        let mut names = vec![];
+        let at = self.cursor.word.start;
+        self.analysis.walk(self.analysis.main, at..at, &mut |piece| {
+            if let Piece::Statement(statement) = piece
+                && self.cursor.open.iter().any(|open| statement.span.range().contains(open))
+            {
+                names.extend(name_of(statement).map(|name| name.span));
+            }
+        });
+        names
     }
 
     /// The fields that the innermost body gives, by name.

@@ -158,12 +158,13 @@ pub(super) fn too_many_pixels(size: [u32; 2], span: Option<Span>) -> Diagnostic 
 }
 
 pub(super) fn looks_at_itself(from: Span, look: Option<Span>) -> Diagnostic {
-    let diagnostic = Diagnostic::new(Code::E0404, "the camera looks at the point where it stands", from)
-        .at("stands here")
-        .help("move `from` away from `look`");
+    let diagnostic = |message| Diagnostic::new(Code::E0404, message, from).at("stands here");
     match look {
-        Some(look) => diagnostic.label(look, "looks here"),
-        None => diagnostic,
+        Some(look) => diagnostic("the camera looks at the point where it stands")
+            .help("move `from` away from `look`")
+            .label(look, "looks here"),
+        None => diagnostic("the camera stands in the middle of the scene, and nothing says where it looks")
+            .help("say it with `look`, or move `from` away from the middle"),
     }
 }
 

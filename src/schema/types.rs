@@ -142,6 +142,20 @@ pub enum Rule {
     Needs(&'static str, &'static str),
 }
 
+impl Rule {
+    /// Whether a field is refused beside others that are given.
+    pub fn excludes(&self, name: &str, given: impl Fn(&str) -> bool) -> bool {
+        let beside = |names: &[&str]| names.iter().any(|other| *other != name && given(other));
+        match self {
+            Rule::ExactlyOne(names) => names.contains(&name) && beside(names),
+            Rule::Excludes(one, others) => {
+                *one == name && beside(others) || others.contains(&name) && given(one)
+            }
+            Rule::Together(_) | Rule::Needs(..) => false,
+        }
+    }
+}
+
 /// Finds a field's place in a kind, and says by its type how to read the value.
 pub struct Key<T> {
     pub(super) place: Place,

@@ -80,6 +80,7 @@ fn explain_prints_pages_and_finds_what_is_meant() {
     let page = desk.run("explain e0203");
     assert_eq!((page.code, page.stderr.as_str()), (Some(0), ""));
     assert!(page.printed().starts_with("E0203: wrong dimension\n"), "{}", page.printed());
+    assert!(desk.run("explain unused_name").printed().starts_with("W0106: "));
     let list = desk.run("explain --list").printed();
     assert_eq!(list.lines().count(), Code::ALL.len());
     assert!(list.contains("W0106  unused name (warning)\n"), "{list}");

@@ -136,13 +136,21 @@ pub(in crate::check) fn allow_error(code: Code, prefix: &Prefix) -> Diagnostic {
 }
 
 pub(in crate::check) fn allow_what(name: &Name) -> Diagnostic {
-    let warnings = Code::ALL.iter().filter(|code| code.as_str().starts_with('W'));
+    // That an `@allow` is unused is not meant by one.
+    let warnings = Code::ALL.iter().filter(|code| code.as_str().starts_with('W') && **code != Code::W0105);
     let names: Vec<String> = warnings.flat_map(|code| [code.as_str().to_string(), code.name()]).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let diagnostic = Diagnostic::new(Code::E0101, format!("no warning is called `{}`", name.text), name.span)
         .at("not known here");
-    match closest(&name.text, &names) {
-        Some(guess) => guess.ask(diagnostic, name.span, ""),
+    if let Some(guess) = closest(&name.text, &names) {
+        return guess.ask(diagnostic, name.span, "");
+    }
+    // The first word of a name, as far as it was typed.
+    let begun = |known: &&&str| name.text.chars().count() > 2 && known.starts_with(&*name.text);
+    match names.iter().find(begun) {
+        Some(known) => diagnostic
+            .help(format!("did you mean `{known}`?"))
+            .offer(format!("replace it with `{known}`"), vec![(name.span, known.to_string())]),
         None => diagnostic.help("write its code, such as `W0106`"),
     }
 }

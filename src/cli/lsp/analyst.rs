@@ -3,6 +3,7 @@
 use super::document::{Encoding, Place, Text};
 use super::documents::{Document, Key};
 use super::view::View;
+use super::work::{Failure, guarded};
 use super::world::{Names, World};
 use gen_lsp_types::{Location, Position, Range, Uri};
 use rt_lang::analyse;
@@ -30,9 +31,12 @@ pub struct Meaning {
 impl Meaning {
     /// Finds out what a document means, or a file that is not open. None where it is not wanted any more or cannot be read.
     pub fn find(view: &View, key: &Key, stop: Stop) -> Option<Meaning> {
-        let world = World::around(view, key);
+        Meaning::find_in(&World::around(view, key), view, key, stop)
+    }
+
+    fn find_in(world: &World, view: &View, key: &Key, stop: Stop) -> Option<Meaning> {
         let source = world.source().ok()?;
-        let analysis = analyse(&world, source, &view.session.options(), stop)?;
+        let analysis = analyse(world, source, &view.session.options(), stop)?;
         let texts: Vec<OnceLock<Text>> = (0..analysis.sources.len()).map(|_| OnceLock::new()).collect();
         if let (Some(document), Some(text)) = (view.documents.get(key), texts.get(analysis.main.0 as usize)) {
             // Its lines are known already.
@@ -123,6 +127,9 @@ pub fn uri(view: &View, key: &Key) -> Uri {
     view.documents.get(key).map_or_else(|| key.uri(), |document| document.uri.clone())
 }
 
+/// What a look at a document found: what it means, or why that is not known, with the files that were asked for.
+pub type Looked<'a> = Result<&'a Arc<Meaning>, (&'a Failure, BTreeSet<Key>)>;
+
 /// Keeps what the open documents mean.
 #[derive(Debug, Default)]
 pub struct Analyst {
@@ -132,26 +139,38 @@ pub struct Analyst {
 impl Analyst {
     /// What an open document means in the state in which it is seen. None where `stop` said so. `told` hears of what was not
     /// known before.
+    ///
+    /// # Errors
+    ///
+    /// Where finding it out panics.
     pub fn meaning(
         &mut self,
         view: &View,
         key: &Key,
         document: &Document,
         stop: Stop,
-        told: impl FnOnce(&Arc<Meaning>),
-    ) -> Option<Arc<Meaning>> {
+        told: impl FnOnce(Looked),
+    ) -> Result<Option<Arc<Meaning>>, Failure> {
         if let Some((stamp, meaning)) = self.known.get(key)
             && *stamp == document.stamp
             // That it reads what has changed since may not be known yet.
             && meaning.is_of(view)
         {
-            return Some(meaning.clone());
+            return Ok(Some(meaning.clone()));
         }
-        let meaning = Arc::new(Meaning::find(view, key, stop)?);
+        let world = World::around(view, key);
+        let meaning = match guarded(|| Meaning::find_in(&world, view, key, stop)) {
+            Ok(Some(meaning)) => Arc::new(meaning),
+            Ok(None) => return Ok(None),
+            Err(failure) => {
+                told(Err((&failure, world.asked())));
+                return Err(failure);
+            }
+        };
         // It takes a while to take apart, which nobody should wait for.
         let _before = self.known.insert(key.clone(), (document.stamp, meaning.clone()));
-        told(&meaning);
-        Some(meaning)
+        told(Ok(&meaning));
+        Ok(Some(meaning))
     }
 
     /// Forgets what is closed.
@@ -163,14 +182,15 @@ impl Analyst {
 #[cfg(test)]
 mod tests {
     use super::super::client::Client;
+    use super::super::diagnostics::{self, Board};
     use super::super::documents::Documents;
     use super::super::pages::Pages;
     use super::super::view::Session;
     use super::*;
     use serde_json::json;
 
-    #[test]
-    fn what_was_found_in_another_version_of_what_is_read_is_found_anew() {
+    /// One that knows of these documents.
+    fn view(documents: Documents) -> View {
         let session = Session {
             client: Client::default(),
             encoding: Encoding::Utf16,
@@ -178,17 +198,59 @@ mod tests {
             pages: Pages::default(),
             memory: Arc::default(),
         };
+        View { session: Arc::new(session), documents, folders: vec![] }
+    }
+
+    #[test]
+    fn behind_a_panic_nothing_old_is_shown_and_what_was_read_is_known() {
+        let mut documents = Documents::default();
+        let read = documents.open("file:///nowhere/b.rt".to_string().into(), 1, "let a = 1m\n".into());
+        let text = "import \"b.rt\" as b\nsphere {}\n";
+        let own = documents.open("file:///nowhere/a.rt".to_string().into(), 1, text.into());
+        let view = view(documents);
+        let (mut analyst, mut board) = (Analyst::default(), Board::default());
+        let mut look = |analyst: &mut Analyst, stop: Stop| {
+            let document = view.documents.get(&own).unwrap().clone();
+            let (mut told, mut reads) = (vec![], BTreeSet::new());
+            let hear = |looked: Looked| {
+                let found;
+                (reads, found) = diagnostics::looked(looked, &own, &view);
+                told = board.take(own.clone(), found, &view);
+            };
+            let answer = analyst.meaning(&view, &own, &document, stop, hear);
+            let said: Vec<String> = told
+                .iter()
+                .flat_map(|told| &told.diagnostics)
+                .map(|said| format!("{:?}", said.message))
+                .collect();
+            (answer.is_ok(), reads, said)
+        };
+        let (is_known, reads, said) = look(&mut analyst, &|| false);
+        assert!(
+            is_known && reads.contains(&read) && said.iter().any(|said| said.contains("radius")),
+            "{said:?}"
+        );
+        // As if the text were another now.
+        analyst.known.clear();
+        let (is_known, reads, said) = look(&mut analyst, &|| panic!("oh"));
+        assert!(!is_known && reads.contains(&read), "{reads:?}");
+        assert!(matches!(&said[..], [said] if said.contains("bug in rtc: oh")), "{said:?}");
+    }
+
+    #[test]
+    fn what_was_found_in_another_version_of_what_is_read_is_found_anew() {
         let mut documents = Documents::default();
         let uri = "file:///nowhere/b.rt";
         let read = documents.open(uri.to_string().into(), 1, "let seat = 1m\n".into());
         let text = "import \"b.rt\" as b\nsphere { radius: b.seat }\n";
         let own = documents.open("file:///nowhere/a.rt".to_string().into(), 1, text.into());
-        let mut view = View { session: Arc::new(session), documents, folders: vec![] };
+        let mut view = view(documents);
         let mut analyst = Analyst::default();
         let mut look = |view: &View| {
             let document = view.documents.get(&own).unwrap().clone();
             let mut is_new = false;
-            let meaning = analyst.meaning(view, &own, &document, &|| false, |_| is_new = true).unwrap();
+            let meaning = analyst.meaning(view, &own, &document, &|| false, |_| is_new = true);
+            let meaning = meaning.unwrap().unwrap();
             let texts: Vec<String> =
                 meaning.analysis.sources.iter().map(|(_, source)| source.text.clone()).collect();
             (is_new, texts.concat())

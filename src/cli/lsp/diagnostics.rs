@@ -1,6 +1,6 @@
 //! What is said of documents, to the client.
 
-use super::analyst::Meaning;
+use super::analyst::{Looked, Meaning};
 use super::documents::{Kept, Key, MOST_TEXT, MOST_TEXTS};
 use super::view::View;
 use gen_lsp_types as lsp;
@@ -35,8 +35,24 @@ fn edited(view: &View, key: &Key) -> Option<u64> {
     view.documents.get(key).map(|document| document.edited)
 }
 
+/// What a look at a document says of each file, and which files it is made of. Where it panicked nothing is known: what
+/// was said before is taken back, and this is said in its place.
+pub fn looked(looked: Looked, key: &Key, view: &View) -> (BTreeSet<Key>, Found) {
+    match looked {
+        Ok(meaning) => (meaning.reads.clone(), found(meaning, key, view)),
+        Err((failure, reads)) => {
+            let message = format!(
+                "{}\nhelp: report it with this text; nothing else is known of it until it is edited",
+                failure.message
+            );
+            let own = Said { all: vec![plain(message)], ..Said::new(view, key) };
+            (reads, Found::from([(key.clone(), own)]))
+        }
+    }
+}
+
 /// What an analysis says of each file.
-pub fn found(meaning: &Meaning, key: &Key, view: &View) -> Found {
+fn found(meaning: &Meaning, key: &Key, view: &View) -> Found {
     let mut own = Said::new(view, key);
     let unknown = match view.documents.get(key).map(|document| document.kept) {
         None | Some(Kept::Whole) => None,
@@ -48,7 +64,10 @@ pub fn found(meaning: &Meaning, key: &Key, view: &View) -> Found {
             "all open documents have at most {} MiB together\nhelp: close others, then close this and open it again",
             MOST_TEXTS >> 20
         ))),
-        Some(Kept::Lost) => Some(lost()),
+        Some(Kept::Lost) => Some(plain(
+            "the editor has told of an edit that makes no sense: close this document and open it again"
+                .into(),
+        )),
     };
     let is_known = unknown.is_none();
     own.all.extend(unknown);
@@ -79,22 +98,15 @@ pub fn found(meaning: &Meaning, key: &Key, view: &View) -> Found {
 
 /// Says that a document is not looked at.
 fn too_long(message: String) -> lsp::Diagnostic {
-    lsp::Diagnostic {
-        severity: Some(lsp::DiagnosticSeverity::Error),
-        code: Some(lsp::Code::String(Code::E0406.as_str().into())),
-        source: Some("rtc".into()),
-        message: lsp::Message::String(message),
-        ..lsp::Diagnostic::default()
-    }
+    lsp::Diagnostic { code: Some(lsp::Code::String(Code::E0406.as_str().into())), ..plain(message) }
 }
 
-/// Says that nobody knows what stands in a document.
-fn lost() -> lsp::Diagnostic {
-    let message = "the editor has told of an edit that makes no sense: close this document and open it again";
+/// Says of a document what is not about the language.
+fn plain(message: String) -> lsp::Diagnostic {
     lsp::Diagnostic {
         severity: Some(lsp::DiagnosticSeverity::Error),
         source: Some("rtc".into()),
-        message: lsp::Message::String(message.into()),
+        message: lsp::Message::String(message),
         ..lsp::Diagnostic::default()
     }
 }

@@ -4,7 +4,7 @@
 //! a completion and not for an analysis. A question is dropped when it is cancelled, and while it is worked on, whoever
 //! works asks from time to time whether it still matters.
 
-use super::analyst::{Analyst, Meaning};
+use super::analyst::{Analyst, Looked, Meaning};
 use super::diagnostics::{self, Found};
 use super::documents::{Document, Key};
 use super::requests::{Lane, Run};
@@ -344,13 +344,16 @@ impl Asked<'_> {
         }
         let stop = || cancelled.load(Ordering::Relaxed) || document.is_stale();
         let told = &self.worker.told;
-        let tell = |meaning: &Arc<Meaning>| {
-            let (key, view, reads) = (key.clone(), view.clone(), meaning.reads.clone());
-            let found = diagnostics::found(meaning, &key, &view);
+        let tell = |looked: Looked| {
+            let (reads, found) = diagnostics::looked(looked, key, view);
+            let (key, view) = (key.clone(), view.clone());
             // Nobody listens at the end.
             let _ = told.send(Told::Looked { key, view, reads, found });
         };
-        let meaning = self.worker.analyst.meaning(view, key, document, &stop, tell);
+        let meaning = match self.worker.analyst.meaning(view, key, document, &stop, tell) {
+            Ok(meaning) => meaning,
+            Err(failure) => return Some(Err(failure)),
+        };
         let failure = || Failure::new(ErrorCode::ContentModified, "the document has changed");
         Some(meaning.ok_or_else(|| self.spoilt(document).unwrap_or_else(failure)))
     }

@@ -24,15 +24,31 @@ const STATEMENTS: &[(&str, &str, &str)] = &[
 ];
 
 impl List<'_> {
+    /// What can stand behind `else`.
+    pub(super) fn branch(&mut self) {
+        for (word, insert, doc) in STATEMENTS.iter().filter(|(word, ..)| *word == "if") {
+            self.statement(word, insert, doc, Rank::May);
+        }
+        self.push("{", CompletionKind::Keyword, Rank::May).insert = Insert::with_holes("{\n  ‹›\n}");
+    }
+
     /// Fields that are not given yet, and statements, as far as the body takes them.
     pub(super) fn entry(&mut self, typing: &Typing) {
+        // What is left out, or alone, is something that is drawn.
+        let is_solo = typing.cursor.has_prefix("@solo");
+        let is_marked = is_solo || typing.cursor.has_prefix("@off");
         let holds_members = match typing.body() {
             Some(body) => {
-                self.fields(typing, body.kind);
+                if !is_marked {
+                    self.fields(typing, body.kind);
+                }
                 body.kind == Kind::BuiltIn(crate::schema::group::KIND)
             }
             None => true,
         };
+        if !holds_members && is_marked {
+            return;
+        }
         if !holds_members {
             for (word, insert, doc) in
                 STATEMENTS.iter().filter(|(word, ..)| matches!(*word, "let" | "material"))
@@ -42,17 +58,20 @@ impl List<'_> {
             return;
         }
         let home = home(typing);
-        if home == Home::Part {
+        if home == Home::Part && !is_marked {
             let given = typing.given();
             PLACED
                 .iter()
                 .filter(|field| !given.contains(field.name))
                 .for_each(|field| self.field(field, Rank::Rather));
         }
-        self.kinds(home);
+        self.kinds(home, is_solo);
         self.prototypes(typing);
         for (word, insert, doc) in STATEMENTS {
             let fits = match *word {
+                "for" | "if" => true,
+                "assert" => !is_solo,
+                _ if is_marked => false,
                 "import" => home == Home::File,
                 "param" | "part" | "fn" => matches!(home, Home::File | Home::Part),
                 _ => true,
@@ -76,7 +95,11 @@ impl List<'_> {
         match kind {
             Kind::BuiltIn(id) => {
                 let base = typing.body().map(|body| body.given).unwrap_or_default();
-                for (index, field) in id.fields().enumerate().filter(|(_, field)| free(field.name)) {
+                let has =
+                    |name: &str| !free(name) || id.field_index(name).is_some_and(|index| base.has(index));
+                let excluded = |name: &str| id.get().rules.iter().any(|rule| rule.excludes(name, has));
+                let fields = id.fields().enumerate();
+                for (index, field) in fields.filter(|(_, field)| free(field.name) && !excluded(field.name)) {
                     let needed = field.default == Preset::Required && !base.has(index);
                     self.field(field, if needed { Rank::Fits } else { Rank::May });
                 }
@@ -109,11 +132,11 @@ impl List<'_> {
     }
 
     /// The kinds of things that can stand in a body.
-    fn kinds(&mut self, home: Home) {
+    fn kinds(&mut self, home: Home, is_solo: bool) {
         for kind in KINDS {
             let rank = match kind.category {
                 Category::Shape | Category::Light | Category::Group => Rank::May,
-                Category::Block if home == Home::File || home == Home::Branch => Rank::May,
+                Category::Block if !is_solo && matches!(home, Home::File | Home::Branch) => Rank::May,
                 Category::Block | Category::Material => continue,
             };
             self.kind(kind.name, rank);
@@ -128,10 +151,11 @@ impl List<'_> {
         completion.doc = kind_doc(id);
     }
 
-    /// Names that are used as kinds.
+    /// Names that are used as kinds. Nothing is made of what it lies in.
     fn prototypes(&mut self, typing: &Typing) {
+        let around = typing.around();
         for (name, place, ty) in typing.visible() {
-            if is_used(ty) {
+            if is_used(ty) && !around.contains(&place) {
                 let completion = self.push(name, kind_of(ty), Rank::Fits);
                 completion.insert = Insert::with_holes(&used(name));
                 completion.detail = detail_of(ty);

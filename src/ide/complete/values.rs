@@ -207,7 +207,8 @@ impl List<'_> {
 
     fn members_of(&mut self, typing: &Typing, ty: &Type) {
         let begins = typing.cursor.begins_statement();
-        for (name, place, ty) in inside(typing, ty) {
+        // A statement begins with what is used as a kind, or with the file of that.
+        for (name, place, ty) in inside(typing, ty).into_iter().filter(|(.., ty)| !begins || is_used(ty)) {
             let completion = self.push(&name, kind_of(&ty), Rank::Fits);
             completion.detail = detail_of(&ty);
             completion.doc = doc_of(typing, place);
@@ -215,9 +216,12 @@ impl List<'_> {
                 Type::Function(_) => {
                     completion.insert = Insert::with_holes(&call_of(typing, place, &name));
                 }
-                ty if begins && is_used(&ty) => completion.insert = Insert::with_holes(&used(&name)),
+                _ if begins => completion.insert = Insert::with_holes(&used(&name)),
                 _ => {}
             }
+        }
+        if begins {
+            return;
         }
         match ty {
             Type::Tuple(count, element) => {
