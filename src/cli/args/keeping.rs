@@ -21,9 +21,9 @@ pub struct Halting {
 /// How work is kept.
 #[derive(Args)]
 pub struct Keeping {
-    /// Keeps the samples in this file, or if none is named beside the picture that the first `-o` names, every now and then, at the end, and when the
-    /// process is asked to end. Run again, it goes on from there; with a higher limit it adds samples to a picture that
-    /// was done.
+    /// Keeps the samples in this file, or if none is named beside the picture that the first `-o` names: every now and then, at
+    /// the end, and when the process is asked to end. Run again, it goes on from there; with a higher limit it adds samples to a
+    /// picture that was done.
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
     pub checkpoint: Option<Option<PathBuf>>,
 
