@@ -73,6 +73,12 @@ pub fn kind(name: &str) -> Option<KindId> {
     KINDS.iter().position(|kind| kind.name == name).map(|index| KindId(index as u8))
 }
 
+/// Whether things of a kind only stand inside another thing, as a `lens` in a `camera`.
+pub fn is_part(name: &str) -> bool {
+    let holds = |ty: FieldType| matches!(ty, FieldType::Part(part) if part == name);
+    KINDS.iter().flat_map(|kind| kind.fields).any(|field| holds(field.ty))
+}
+
 macro_rules! kinds {
     ($(
         $(#[doc = $doc:literal])*

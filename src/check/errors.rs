@@ -20,6 +20,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::schema::{self, Category, Field, FieldType, KindId, Preset, familiar};
 use crate::span::Span;
 use crate::syntax::ast::{Keyword, Name, Path};
+use crate::syntax::is_near;
 use crate::units;
 
 fn quoted(names: &[&str]) -> String {
@@ -43,7 +44,10 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
     if let Some(help) = said_otherwise(what, &name.text) {
         return diagnostic.help(help);
     }
-    let guess = closest(&name.text, candidates).filter(|guess| same_start(guess.name));
+    // What only stands inside another is not meant where anything may stand.
+    let inner = |kind: &&str| what == "kind" && schema::is_part(kind);
+    let free: Vec<&str> = candidates.iter().copied().filter(|kind| !inner(kind)).collect();
+    let guess = closest(&name.text, &free).filter(|guess| same_start(guess.name));
     let guess = guess.map(|mut guess| {
         guess.near.retain(|near| same_start(near));
         guess
@@ -53,6 +57,13 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
         || familiar::kind(&name.text).filter(|here| here.name.is_none_or(|name| candidates.contains(&name)));
     match guess.filter(|_| what != "unit" || !name.text.contains(|c: char| c.is_ascii_digit())) {
         Some(guess) if guess.certain => guess.ask(diagnostic, name.span, ""),
+        _ if what == "kind"
+            && let Some(keyword) = ["part", "else"].into_iter().find(|word| is_near(&name.text, word)) =>
+        {
+            let edit = vec![(name.span, keyword.to_string())];
+            let diagnostic = diagnostic.help(format!("did you mean `{keyword}`?"));
+            diagnostic.offer(format!("replace it with `{keyword}`"), edit)
+        }
         _ if what == "kind"
             && let Some(here) = elsewhere() =>
         {

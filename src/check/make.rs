@@ -99,7 +99,8 @@ impl Checker<'_> {
             let diagnostic = errors::unknown(Code::E0101, "kind", name, &self.kind_names());
             self.report_lost(&name.text, diagnostic);
             // What stands inside is looked at as if the kind had been spelt right.
-            let built_ins: Vec<&str> = schema::KINDS.iter().map(|kind| kind.name).collect();
+            let built_ins: Vec<&str> =
+                schema::KINDS.iter().map(|kind| kind.name).filter(|kind| !schema::is_part(kind)).collect();
             // What has another name elsewhere may have other fields too.
             let guess = errors::closest(&name.text, &built_ins)
                 .filter(|guess| guess.certain || schema::familiar::kind(&name.text).is_none())

@@ -165,7 +165,8 @@ impl<'a> Checker<'a> {
     }
 
     /// Reports an unknown name.
-    fn report_lost(&mut self, name: &SmolStr, diagnostic: Diagnostic) {
+    fn report_lost(&mut self, name: &SmolStr, mut diagnostic: Diagnostic) {
+        self.ask_unless_sure(name, &mut diagnostic);
         self.lost.push((self.diagnostics.len(), name.clone()));
         self.report(diagnostic);
     }

@@ -1,11 +1,13 @@
 //! Names that nothing declares: what was probably meant, by what is wanted where they stand.
 
 use super::declared::Declared;
+use super::functions::Function;
 use super::types::Type;
 use super::{Checker, Expr, errors};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Fix, Offer};
 use crate::schema::{self, FieldType};
 use crate::span::Span;
+use crate::syntax::RESERVED;
 use crate::syntax::ast::{self, ExprKind as Tree, Name};
 use smol_str::SmolStr;
 
@@ -53,6 +55,27 @@ impl Checker<'_> {
         let Tree::Text(text) = &value.kind else { return None };
         let found = self.is_declared(text).then(|| self.lookup(text))??;
         Some((Name { text: text.clone(), span: value.span }, found.ty))
+    }
+
+    /// Offers a mend in place of making it, where another may be meant: a name that is only half typed, or one that is
+    /// mistyped where it is declared, which then has no use so far.
+    pub(super) fn ask_unless_sure(&self, name: &str, diagnostic: &mut Diagnostic) {
+        let edits = diagnostic.fix.as_ref().map_or(&[][..], |fix| &fix.edits);
+        let [(place, meant)] = edits else { return };
+        let longer = |word: &str| word.len() > name.len() && word.starts_with(name) && word != meant;
+        let half_typed = RESERVED.iter().any(|word| longer(word))
+            || Function::ALL.iter().any(|function| longer(function.name()))
+            || self.scopes.iter().any(|scope| scope.names.keys().any(|word| longer(word)));
+        let declared = self
+            .scopes
+            .iter()
+            .rev()
+            .find_map(|scope| scope.names.get(meant.as_str()).map(|&at| &scope.known[at]));
+        if half_typed || declared.is_some_and(|declared| !declared.used) {
+            let offer = (format!("replace it with `{meant}`"), vec![(*place, meant.clone())]);
+            diagnostic.fix = None;
+            diagnostic.offers.push(Offer { title: offer.0, fix: Fix { edits: offer.1 } });
+        }
     }
 
     /// Whether a place lies in a setting from outside.

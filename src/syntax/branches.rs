@@ -25,7 +25,28 @@ pub(super) fn repetition<'t>(
             let body = empty(span.after());
             return (StatementKind::For { variable, list, body }, 1);
         }
-        None => builder.report(slips::missing_in("", variable.span.after())),
+        None => {
+            let behind = builder.after(variable.span.range().end - builder.base()).trim_ascii_start();
+            let word = errors::first_token(behind);
+            let place =
+                builder.at(builder.text_len() - behind.len(), builder.text_len() - behind.len() + word.len());
+            let more = behind[word.len()..].trim_ascii_start();
+            let body = parts.clone().find(|part| part.as_rule() == Rule::body);
+            if matches!(word, "of" | "ni" | "n" | "i" | "im" | "on" | "is")
+                && !more.is_empty()
+                && !more.starts_with('{')
+            {
+                // `for i of list { … }`
+                builder.report(slips::missing_in(word, place));
+                let (list, span) = (invalid(place), span.after());
+                let (body, depth) = body.map_or_else(|| (empty(span), 0), |body| builder.body(body));
+                return (StatementKind::For { variable, list, body }, depth + 1);
+            }
+            // Without a body, the word may be half typed.
+            let mut slip = slips::missing_in("", variable.span.after());
+            slip.fix = slip.fix.filter(|_| body.is_some());
+            builder.report(slip);
+        }
     }
     let (mut list, depth) = value::expression(builder, parts.next().expect("`for` has a head"));
     let bodies = parts.clone().filter(|part| part.as_rule() == Rule::body);
@@ -167,8 +188,21 @@ fn otherwise<'t>(builder: &Builder<'t>, pair: Node<'t>) -> Deep<Body> {
             chained(builder, kind, depth, span)
         }
         None => {
-            if !builder.unbraced.get() {
-                builder.report(slips::missing_else_block(place));
+            let behind = builder.after(place.range().end - builder.base()).trim_ascii_start();
+            let thing =
+                behind.split_once('{').map(|(thing, _)| thing.trim_ascii()).filter(|thing| is_kind(thing));
+            match thing.filter(|thing| !thing.is_empty()) {
+                Some(thing) => {
+                    let start = builder.text_len() - behind.len();
+                    let kind = errors::first_token(thing);
+                    builder.report(slips::unbraced_thing(
+                        "else",
+                        kind,
+                        builder.at(start, start + kind.len()),
+                    ));
+                }
+                None if !builder.unbraced.get() => builder.report(slips::missing_else_block(place)),
+                None => {}
             }
             (empty(place.after()), 0)
         }

@@ -146,6 +146,11 @@ impl<'t> Builder<'t> {
         &self.text[offset..]
     }
 
+    /// What stands there as it was written, before characters were read as others; none within a character.
+    pub(super) fn written(&self, place: Span) -> Option<&'t str> {
+        self.source.text.get(place.range())
+    }
+
     /// How long the item is, in bytes.
     pub(super) fn text_len(&self) -> usize {
         self.text.len()
@@ -188,22 +193,6 @@ impl<'t> Builder<'t> {
         self.source.depth
     }
 
-    /// An item that was not parsed. What it seems to define counts as given, unless its name was read from other characters.
-    pub(super) fn unread(&self) -> Entry {
-        let mut words = self.text.split_ascii_whitespace();
-        let _kind = words.next();
-        let name = words.next().filter(|word| {
-            let begins = word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
-            begins && word.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
-        });
-        let name = name.map(|word| {
-            let start = word.as_ptr().addr() - self.text.as_ptr().addr();
-            Name { text: SmolStr::new(word), span: self.at(start, start + word.len()) }
-        });
-        let name = name.filter(|name| self.source.text.get(name.span.range()) == Some(name.text.as_str()));
-        Entry::Broken(Broken { name, span: self.whole() })
-    }
-
     /// Entries, and the slips with which some of them end.
     pub(super) fn entries(&self, pairs: Pairs<'t, Rule>, top: bool) -> Deep<Vec<Entry>> {
         let (mut entries, mut deepest) = (vec![], 0);
@@ -216,9 +205,17 @@ impl<'t> Builder<'t> {
         let mut headless: Option<usize> = None;
         // Where the last entry ends, if nothing of it was understood: more of the kind on its line is one slip.
         let mut lost = None;
+        // Whether the next entry is what belongs to the last, as behind a mistyped `else`.
+        let mut otherwise = false;
         for pair in pairs {
             match pair.as_rule() {
                 Rule::semicolon => self.semicolon(&pair),
+                Rule::crowded | Rule::extra if self.mistyped_else(&pair, entries.last()) => {
+                    otherwise = pair.as_rule() == Rule::crowded;
+                }
+                Rule::crowded if self.goes_on(&pair, entries.last()) => {
+                    (otherwise, muted) = (true, Some(self.reported()));
+                }
                 // `let r: length 5cm`: that `=` is missing was said.
                 Rule::extra if signed => entries.last_mut().into_iter().for_each(spoil),
                 Rule::crowded if explained => muted = Some(self.reported()),
@@ -266,7 +263,8 @@ impl<'t> Builder<'t> {
                     explained_value = ends_invalid(&entry);
                     deepest = deepest.max(depth);
                     let belongs = headless.is_none_or(|from| self.text[from..start].contains('\n'));
-                    if belongs || !matches!(entry, Entry::Field(_)) {
+                    let other = std::mem::take(&mut otherwise);
+                    if !other && (belongs || !matches!(entry, Entry::Field(_))) {
                         entries.push(entry);
                     }
                 }

@@ -342,7 +342,10 @@ impl<'t> Cutter<'t> {
 
     /// Whether this comma stands between the condition of an `assert` and its message.
     fn message_follows(&mut self) -> bool {
-        std::mem::take(&mut self.asserts) && self.next_token(self.at + 1).starts_with(['"', '('])
+        let mistyped = |start: usize| super::is_near(self.word(start), "assert");
+        let asserts = self.asserts || self.levels.is_empty() && self.item.is_some_and(mistyped);
+        self.asserts = false;
+        asserts && self.next_token(self.at + 1).starts_with(['"', '('])
     }
 
     fn number(&mut self) -> Last {

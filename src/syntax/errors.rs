@@ -103,6 +103,11 @@ pub(super) fn first_token(text: &str) -> &str {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
     let word = text.find(|c| !is_word(c)).unwrap_or(text.len());
     let sign = text.chars().next().map_or(0, char::len_utf8);
+    if let Some(rest) = text.strip_prefix('#') {
+        let code = &rest[..rest.find(|c| !is_word(c)).unwrap_or(rest.len())];
+        let is_code = code.bytes().all(|byte| byte.is_ascii_hexdigit());
+        return if is_code { &text[..1 + code.len()] } else { "#" };
+    }
     &text[..word.max(sign)]
 }
 
@@ -145,6 +150,9 @@ pub(super) fn unexpected_extra(token: &str, span: Span) -> Diagnostic {
         "|" => diagnostic.help("`|>` passes a placement on"),
         "'" => diagnostic.help("feet are written `3ft`, and inches `3in`"),
         "#" => diagnostic.help("a comment begins with `//`").fix(span, "//"),
+        code if code.starts_with('#') => {
+            diagnostic.help("a colour stands alone behind its field: `diffuse { color: #d94f30 }`")
+        }
         "scale" | "turn" | "move" | "matrix" => {
             diagnostic.help("placements are joined by `|>`").fix(span.before(), "|> ")
         }

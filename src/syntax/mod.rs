@@ -18,6 +18,7 @@ mod format;
 mod items;
 mod literal;
 mod lookalikes;
+mod mistyped;
 mod places;
 mod remembered;
 mod rows;
@@ -27,6 +28,7 @@ mod statement;
 mod value;
 
 pub use format::{WIDTH, format};
+pub(crate) use mistyped::is_near;
 pub use remembered::Remembered;
 pub use rows::{Rows, Shape};
 

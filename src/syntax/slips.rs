@@ -263,6 +263,9 @@ impl<'t> Builder<'t> {
         top: bool,
     ) -> Deep<Entry> {
         let name = self.name(word);
+        if let Some(mistyped) = self.mistyped(&name, word.as_span().end(), span) {
+            return (mistyped, 0);
+        }
         let value = inner.next().expect("this slip has a value");
         let value_span = self.at(value.as_span().start(), self.before(value.as_span().end()).len());
         let field = &name.text == "material" && !top;
@@ -415,6 +418,22 @@ impl<'t> Builder<'t> {
         let place = Span::new(value.span.source, start, start + word.len());
         self.report(errors::no_brace(kind, value.span, place));
         true
+    }
+
+    /// An item that was not parsed. What it seems to define counts as given, unless its name was read from other characters.
+    pub(super) fn unread(&self) -> Entry {
+        let mut words = self.after(0).split_ascii_whitespace();
+        let _kind = words.next();
+        let name = words.next().filter(|word| {
+            let begins = word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+            begins && word.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
+        });
+        let name = name.map(|word| {
+            let start = word.as_ptr().addr() - self.after(0).as_ptr().addr();
+            Name { text: word.into(), span: self.at(start, start + word.len()) }
+        });
+        let name = name.filter(|name| self.written(name.span) == Some(name.text.as_str()));
+        Entry::Broken(Broken { name, span: self.whole() })
     }
 
     pub(super) fn crowded(&self, pair: &Node) {

@@ -4,7 +4,7 @@
 use super::ast::{Body, Broken, Entry, Expr, ExprKind, Name, Parameter, StatementKind, TypeName};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements as slips};
-use super::{RANGED_WORDS, TYPE_WORDS, branches, literal, value};
+use super::{BLANKS, RANGED_WORDS, TYPE_WORDS, branches, literal, mistyped, value};
 use crate::span::Span;
 use pest::iterators::Pairs;
 use smol_str::SmolStr;
@@ -233,15 +233,36 @@ fn import<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> 
     let name = match (parts.next(), parts.next()) {
         (Some(_), Some(name)) => declared(builder, Some(name)),
         (given, _) => {
-            match given {
-                Some(_) => builder.report(slips::missing_import_name(span.after())),
-                None => builder.report(slips::missing_as(stem(&path.text), place.after())),
-            }
-            let name = stem(&path.text).unwrap_or("");
+            let name = match given {
+                Some(_) => {
+                    builder.report(slips::missing_import_name(span.after()));
+                    stem(&path.text).unwrap_or("")
+                }
+                None => unnamed(builder, &path.text, place.range().end - builder.base()),
+            };
             Name { text: SmolStr::new(name), span: place.after() }
         }
     };
     (StatementKind::Import { path, name }, 1)
+}
+
+/// The name of a file where `as` does not follow its path, with a complaint.
+fn unnamed<'a>(builder: &Builder<'a>, path: &'a str, end: usize) -> &'a str {
+    let rest = builder.after(end);
+    let line = rest.split('\n').next().unwrap_or("");
+    let start = end + line.len() - line.trim_start_matches(BLANKS).len();
+    let words: Vec<&str> = line.split_ascii_whitespace().collect();
+    let is_name = |word: &str| super::is_word(word) && !is_reserved(word);
+    let (name, edit, place) = match words[..] {
+        [] => (stem(path), stem(path).map(|name| format!(" as {name}")), builder.at(end, end)),
+        [name] if is_name(name) => (Some(name), Some(" as".into()), builder.at(end, end)),
+        [sign @ ("=" | "sa" | "is" | "AS" | "As"), name] if is_name(name) => {
+            (Some(name), Some("as".into()), builder.at(start, start + sign.len()))
+        }
+        _ => (None, None, builder.at(end, end)),
+    };
+    builder.report(slips::missing_as(name, edit, place));
+    name.unwrap_or("")
 }
 
 /// `import lantern as l`: which file is meant is not certain, so none is read.
@@ -302,7 +323,12 @@ fn function<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Span) -> De
         }
         None if complete => {
             complete = false;
-            builder.report(slips::missing_type("the result", place.after(), "fn"));
+            let behind = builder.after(place.range().end - builder.base()).trim_ascii_start();
+            let typed = TYPE_WORDS.contains(&mistyped::leading(behind));
+            builder.report(match typed {
+                true => slips::missing_arrow(place.after()),
+                false => slips::missing_type("the result", place.after(), "fn"),
+            });
         }
         None => {}
     }

@@ -18,7 +18,7 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
         .op(left(Rule::or) | left(Rule::foreign_or))
         .op(left(Rule::and) | left(Rule::foreign_and))
         .op(Op::prefix(Rule::not))
-        .op(left(Rule::compare) | left(Rule::foreign_equals))
+        .op(left(Rule::compare) | left(Rule::foreign_compare) | left(Rule::foreign_equals))
         .op(left(Rule::to) | left(Rule::dots))
         .op(left(Rule::sum))
         .op(left(Rule::product) | left(Rule::foreign_product))
@@ -166,8 +166,10 @@ fn infix(builder: &Builder, left: Deep<Expr>, operator: &Node, right: Deep<Expr>
             ExprKind::Binary { operator: BinaryOp::Pipe, at, left: Box::new(left), right: Box::new(right) };
         return checked(builder, Expr { kind, span }, 1 + left_depth.max(right_depth), at);
     }
-    let operator = match binary(operator.as_str()).or_else(|| foreign(builder, operator)) {
+    let operator = match binary(operator.as_str()).or_else(|| foreign(builder, operator, left.span)) {
         Some(operator) => operator,
+        // What is asked, or given, is not known.
+        None if rule == Rule::foreign_equals => return invalid(span),
         None => {
             let edit = Span { start: left.span.end, end: right.span.start.max(at.end), ..at };
             builder.report(errors::dots(operator.as_str(), at, edit));
@@ -205,17 +207,24 @@ fn is_condition(value: &Expr) -> bool {
 }
 
 /// The operator that goes by another sign elsewhere.
-fn foreign(builder: &Builder, operator: &Node) -> Option<BinaryOp> {
+fn foreign(builder: &Builder, operator: &Node, left: Span) -> Option<BinaryOp> {
     let here = match operator.as_rule() {
         Rule::foreign_and => BinaryOp::And,
         Rule::foreign_or => BinaryOp::Or,
         Rule::foreign_equals => BinaryOp::Equal,
         Rule::foreign_product if operator.as_str() == "×" => BinaryOp::Multiply,
         Rule::foreign_product => BinaryOp::Divide,
+        Rule::foreign_compare => match operator.as_str() {
+            "≥" => BinaryOp::GreaterEqual,
+            "≠" => BinaryOp::NotEqual,
+            _ => BinaryOp::LessEqual,
+        },
         _ => return None,
     };
-    builder.report(errors::foreign_operator(operator.as_str(), here.symbol(), builder.span(operator)));
-    Some(here)
+    let certain = operator.as_rule() != Rule::foreign_equals || builder.asks(left);
+    let place = builder.span(operator);
+    builder.report(errors::foreign_operator(operator.as_str(), here.symbol(), place, certain));
+    certain.then_some(here)
 }
 
 fn primary(builder: &Builder, pair: Node) -> Deep<Expr> {
@@ -363,6 +372,8 @@ struct Elements {
     arguments: Vec<Argument>,
     depth: usize,
     unit: Option<Name>,
+    /// The `=` behind the first name, where no values have names.
+    equals: Option<Span>,
     /// Just behind the closing parenthesis.
     end: u32,
     /// Whether the closing parenthesis was written.
@@ -370,13 +381,30 @@ struct Elements {
 }
 
 fn elements(builder: &Builder, pair: Node) -> Elements {
-    let mut found =
-        Elements { arguments: vec![], depth: 0, unit: None, end: builder.span(&pair).end, closed: true };
+    let mut found = Elements {
+        arguments: vec![],
+        depth: 0,
+        unit: None,
+        equals: None,
+        end: builder.span(&pair).end,
+        closed: true,
+    };
     let mut name = None;
+    let call = !matches!(pair.as_rule(), Rule::group | Rule::list);
     let closer = if pair.as_rule() == Rule::list { "]" } else { ")" };
     for pair in pair.into_inner() {
         match pair.as_rule() {
-            Rule::label => name = Some(label(builder, pair)),
+            Rule::label => {
+                let (label, sign) = label(&pair, builder);
+                match sign {
+                    Some(sign) if call => {
+                        let edit = Span { start: label.span.end, ..sign };
+                        builder.report(errors::equals_in_field(&label.text, sign, edit));
+                    }
+                    sign => found.equals = found.equals.or(sign),
+                }
+                name = Some(label);
+            }
             Rule::expr => {
                 let (value, depth) = expression(builder, pair);
                 found.depth = found.depth.max(depth);
@@ -409,26 +437,24 @@ fn elements(builder: &Builder, pair: Node) -> Elements {
     found
 }
 
-/// `name:`, or the slip `name =`.
-fn label(builder: &Builder, pair: Node) -> Name {
-    let written = pair.as_str().trim_ascii_end();
-    let start = pair.as_span().start();
-    let span = builder.at(start, start + written.len());
-    let equals = written.ends_with('=');
-    let name = builder.name(&pair.into_inner().next().expect("a label has a name"));
-    if equals {
-        let sign = Span { start: span.end - 1, ..span };
-        let edit = Span { start: name.span.end, ..span };
-        builder.report(errors::equals_in_field(&name.text, sign, edit));
-    }
-    name
+/// `name:`, or the slip `name =`, with the place of its sign.
+fn label(pair: &Node, builder: &Builder) -> (Name, Option<Span>) {
+    let place = builder.trimmed(pair);
+    let name = builder.name(&pair.clone().into_inner().next().expect("a label has a name"));
+    let equals = pair.as_str().trim_ascii_end().ends_with('=');
+    (name, equals.then_some(Span { start: place.end - 1, ..place }))
 }
 
 /// `(a)`, `(a, b)`, either with a unit behind it.
 fn group(builder: &Builder, pair: Node) -> Deep<Expr> {
     let outer = builder.span(&pair);
-    let Elements { arguments, depth, unit, end, closed } = elements(builder, pair);
+    let Elements { arguments, depth, unit, equals, end, closed } = elements(builder, pair);
     let span = Span { end, ..outer };
+    // `(a = b)`: whether they are equal is asked.
+    if let ([Argument { name: Some(name), .. }], Some(sign)) = (&arguments[..], equals) {
+        builder.report(errors::foreign_operator("=", "==", sign, builder.asks(name.span)));
+        return invalid(span);
+    }
     // One for all of them.
     if let Some(name) = arguments.iter().find_map(|argument| argument.name.as_ref()) {
         builder.report(errors::label_outside_call(&name.text, name.span));

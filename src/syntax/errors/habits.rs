@@ -41,6 +41,14 @@ pub(in crate::syntax) fn habit(word: &str, span: Span) -> Option<Diagnostic> {
     })
 }
 
+/// `le a = 3m`: which word of the language was probably meant.
+pub(in crate::syntax) fn mistyped(keyword: &str, word: &Name) -> Diagnostic {
+    unexpected(&word.text, word.span)
+        .at("is no word of the language")
+        .help(format!("did you mean `{keyword}`?"))
+        .offer(format!("replace it with `{keyword}`"), vec![(word.span, keyword.to_string())])
+}
+
 /// How the things that scenes of other tools are made of are written here.
 fn written(kind: &str) -> &'static str {
     match kind {
@@ -77,7 +85,11 @@ pub(in crate::syntax) fn no_name(kind: &str, name: &str, span: Span) -> Diagnost
             .fix(span, better);
     }
     let better = name.replace('-', "_");
-    diagnostic.at("`-` subtracts").help(format!("join the words by `_`: `{better}`")).fix(span, better)
+    // The same stands where it is used.
+    diagnostic
+        .at("`-` subtracts")
+        .help(format!("join the words by `_`: `{better}`"))
+        .offer(format!("replace it with `{better}`"), vec![(span, better)])
 }
 
 /// `sphere "ball" { … }`; the name, where the text can be one.
@@ -163,16 +175,27 @@ pub(in crate::syntax) fn placement_alone(name: &str, span: Span) -> Diagnostic {
 }
 
 /// `a && b`, `a || b`, `a = b`: operators with another name here.
-pub(in crate::syntax) fn foreign_operator(sign: &str, here: &'static str, span: Span) -> Diagnostic {
+///
+/// `certain` is whether nothing else can be meant: with `=` a value may be given at the wrong place.
+pub(in crate::syntax) fn foreign_operator(
+    sign: &str,
+    here: &'static str,
+    span: Span,
+    certain: bool,
+) -> Diagnostic {
     let diagnostic = unexpected(sign, span).at(format!("`{here}` is wanted"));
     let diagnostic = match here {
         "and" => diagnostic.help("both conditions at once are written `a and b`"),
         "or" => diagnostic.help("either condition is written `a or b`"),
         "==" => diagnostic.help("whether two values are equal is asked by `a == b`"),
         "*" => diagnostic.help("times is written `*`"),
-        _ => diagnostic.help("divided by is written `/`"),
+        "/" => diagnostic.help("divided by is written `/`"),
+        _ => diagnostic.help(format!("write `a {here} b`")),
     };
-    diagnostic.fix(span, here)
+    match certain {
+        true => diagnostic.fix(span, here),
+        false => diagnostic.offer(format!("replace it with `{here}`"), vec![(span, here.to_string())]),
+    }
 }
 
 /// `turn(y: 45deg) | move(0, 1m, 0)`, `a < b | c`

@@ -231,13 +231,16 @@ pub(in crate::syntax) fn bare_path(path: &str, span: Span) -> Diagnostic {
     diagnostic
 }
 
-/// `import "lantern.rt"`; `name` is what the file is called, where that can be a name.
-pub(in crate::syntax) fn missing_as(name: Option<&str>, place: Span) -> Diagnostic {
+/// `import "lantern.rt"`; `name` is what the file may be called, and `edit` what mends it at the place.
+pub(in crate::syntax) fn missing_as(name: Option<&str>, edit: Option<String>, place: Span) -> Diagnostic {
     let diagnostic = Diagnostic::new(Code::E0001, "the imported file has no name", place)
-        .at("`as` and a name belong here");
-    match name {
-        Some(name) => diagnostic.help(format!("write `as {name}`")).fix(place, format!(" as {name}")),
-        None => diagnostic.help(format!("write `{}`", form("import"))),
+        .at("`as` and a name belong here")
+        .help(
+            name.map_or_else(|| format!("write `{}`", form("import")), |name| format!("write `as {name}`")),
+        );
+    match edit {
+        Some(edit) => diagnostic.fix(place, edit),
+        None => diagnostic,
     }
 }
 
@@ -274,6 +277,7 @@ pub(in crate::syntax) fn unbraced_thing(word: &str, kind: &str, span: Span) -> D
     Diagnostic::new(Code::E0001, format!("`{{` is missing before `{kind}`"), span)
         .at(format!("the body of this `{word}` belongs here"))
         .help(match word {
+            "else" => format!("put it into braces of its own: `else {{ {kind} {{ … }} }}`"),
             "for" => format!("put it into braces of its own: `for … in … {{ {kind} {{ … }} }}`"),
             _ => format!("put it into braces of its own: `{word} … {{ {kind} {{ … }} }}`"),
         })
@@ -290,6 +294,13 @@ pub(in crate::syntax) fn in_parameters(token: &str, span: Span) -> Diagnostic {
 pub(in crate::syntax) fn wrong_arrow(sign: &str, span: Span, touches: bool) -> Diagnostic {
     let arrow = if touches { " ->" } else { "->" };
     unexpected(sign, span).at("`->` is wanted").help(format!("write `{}`", form("fn"))).fix(span, arrow)
+}
+
+/// `fn f(a: number) number = a`
+pub(in crate::syntax) fn missing_arrow(place: Span) -> Diagnostic {
+    missing("`->` is missing before the type of the result", place, "fn")
+        .at("`->` belongs here")
+        .fix(place, " ->")
 }
 
 /// `fn f(a: number) -> number`
