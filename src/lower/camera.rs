@@ -1,6 +1,7 @@
 //! The camera: where it stands, what it looks at, and its lens.
 
 use super::{Blocks, Extent, Lowering, Marks, errors, shape::unit};
+use crate::diagnostic::Diagnostic;
 use crate::eval::{Aim, Fields, Focus, Made, ThingId};
 use crate::math::{DVec2, DVec3, atan2, sin, tan};
 use crate::scene::shape::Bounds;
@@ -13,6 +14,9 @@ const THREE_QUARTER: DVec3 = DVec3::new(0.55, 0.42, 1.0);
 
 /// Room left around what a placed camera frames.
 const MARGIN: f64 = 1.08;
+
+/// The least radius that is framed, as a share of its distance from the origin.
+const ROUNDED: f64 = 1e-12;
 
 /// The greatest cosine between two unit vectors that counts as a right angle: rounding.
 const UPRIGHT: f64 = 2e-15;
@@ -102,16 +106,15 @@ impl Lowering<'_> {
         let place = made.given(camera::FROM).map_or(made.span(), |(_, span)| span);
         let Some(forward) = unit(look - position) else {
             let look_place = made.given(camera::LOOK).map(|(_, span)| span);
-            self.report(errors::looks_at_itself(place, look_place));
+            self.report_view(made, errors::looks_at_itself(place, look_place));
             return None;
         };
         let (right, up) = self.upright(made, forward)?;
         let (lens_radius, focus) = match &lens {
-            Some(lens) => self.opening(lens.fields(), position, forward, look)?,
+            Some(lens) => self.opening(made, lens.fields(), position, forward, look)?,
             None => (0.0, 1.0),
         };
-        let chosen = made.given(camera::FROM).is_none() || made.given(camera::LOOK).is_none();
-        self.out.vantage = Some(Vantage { from: position, look, chosen });
+        self.out.vantage = Some(Vantage { from: position, look, chosen: is_chosen(made) });
         if self.overrides.exposure.is_none() {
             self.out.places.exposure = made.given(camera::EXPOSURE).map(|(_, span)| span);
         }
@@ -166,7 +169,20 @@ impl Lowering<'_> {
         let all = if seen.is_empty() { boxes(true) } else { seen };
         match all.is_empty() {
             true => (DVec3::ZERO, 1.0),
-            false => (all.center(), (0.5 * all.size().length()).max(f64::MIN_POSITIVE)),
+            false => {
+                let (center, radius) = (all.center(), 0.5 * all.size().length());
+                // From a point one stands away, and from what is hardly more, so far out, that rounding makes it one.
+                let least = (ROUNDED * center.abs().max_element()).max(f64::MIN_POSITIVE);
+                (center, if radius == 0.0 { least.max(1.0) } else { radius.max(least) })
+            }
+        }
+    }
+
+    /// Reports what is wrong with where a camera stands or looks, unless that was chosen by what an error keeps from being known.
+    fn report_view(&mut self, made: Fields, diagnostic: Diagnostic) {
+        let is_known = || !self.things.incomplete && !(0..self.extents.len()).any(|i| self.is_unknown(i));
+        if !is_chosen(made) || is_known() {
+            self.report(diagnostic);
         }
     }
 
@@ -215,7 +231,7 @@ impl Lowering<'_> {
         let right = match (right, given) {
             (Some(right), _) => Some(right),
             (None, Some((_, span))) => {
-                self.report(errors::up_along_view(span));
+                self.report_view(made, errors::up_along_view(span));
                 None
             }
             // Straight up or down, as on a map: north, −z, is at the top.
@@ -231,7 +247,14 @@ impl Lowering<'_> {
     }
 
     /// Radius of the lens, and the distance that is sharp.
-    fn opening(&mut self, lens: Fields, from: DVec3, forward: DVec3, look: DVec3) -> Option<(f64, f64)> {
+    fn opening(
+        &mut self,
+        made: Fields,
+        lens: Fields,
+        from: DVec3,
+        forward: DVec3,
+        look: DVec3,
+    ) -> Option<(f64, f64)> {
         let focus = lens.given(lens::FOCUS);
         let distance = match focus {
             Some((Focus::Distance(distance), _)) => distance,
@@ -241,7 +264,7 @@ impl Lowering<'_> {
         self.out.marks.focus = Some(focus.as_ref().map_or(lens.span(), |(_, span)| *span));
         if !(distance > 0.0 && distance.is_finite()) {
             let span = focus.map_or(lens.span(), |(_, span)| span);
-            self.report(errors::focus_behind(span));
+            self.report_view(made, errors::focus_behind(span));
             return None;
         }
         let diameter = match (lens.given(lens::APERTURE), lens.given(lens::FOCAL), lens.given(lens::STOP)) {
@@ -262,6 +285,11 @@ impl Lowering<'_> {
         );
         self.out.notes.push(line);
     }
+}
+
+/// Whether where a camera stands, or what it looks at, is chosen for the user.
+fn is_chosen(made: Fields) -> bool {
+    made.given(camera::FROM).is_none() || made.given(camera::LOOK).is_none()
 }
 
 /// Four digits of a number, as the language writes it, whatever the size of the scene.
