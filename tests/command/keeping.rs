@@ -475,7 +475,7 @@ fn killed_at_any_moment_it_goes_on_and_the_bytes_are_the_same() {
 fn signals_write_a_checkpoint() {
     let desk = desk();
     for signal in ["INT", "TERM"] {
-        let arguments = "build room.rt --size 200x150 --samples 1000000 -o a.png --checkpoint=kept";
+        let arguments = "build room.rt --size 48x36 --samples 1000000 -o a.png --checkpoint=kept";
         let mut child = desk.command(arguments).stderr(Stdio::piped()).spawn().unwrap();
         // Its ears are open before that.
         desk.wait_for(".rtc-kept.lock.tmp", &mut child);
@@ -494,7 +494,7 @@ fn signals_write_a_checkpoint() {
             .expect(130, &["interrupted; kept ", " samples", " in `kept`"]);
         assert_ne!(desk.get("kept"), before, "SIG{signal} wrote no checkpoint");
         // There are more already.
-        desk.run("build room.rt --size 200x150 --samples 1 -o a.png --resume=kept")
+        desk.run("build room.rt --size 48x36 --samples 1 -o a.png --resume=kept")
             .expect(2, &["samples a pixel already, and no more than 1 are asked for", "`rtc develop`"]);
         desk.run("develop kept -o a.png").expect(0, &[]);
         for name in ["kept", "a.png"] {
