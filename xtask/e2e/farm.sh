@@ -155,7 +155,7 @@ if (cd farm && SLURM_ARRAY_TASK_ID=2 ./shares.sbatch room.rt 4 parts "${flags[@]
   echo "the lost share would begin afresh"
   exit 1
 fi
-grep -q 'cannot go on from' "$desk/other.log" && grep -q -e '--seed 7 (kept: 0)' "$desk/other.log" || { cat "$desk/other.log"; exit 1; }
+grep -q 'cannot go on from' "$desk/other.log" && grep -q -e '--seed 7` (kept: 0)' "$desk/other.log" || { cat "$desk/other.log"; exit 1; }
 
 # One is preempted: it is asked to end, keeps its samples, and goes back into the queue.
 wait_for 120 "a checkpoint of share 3" test -s farm/parts/3.exr.checkpoint
