@@ -3,6 +3,7 @@
 use super::lex::{Lexeme, lex, split};
 use crate::check::Function;
 use crate::schema::{FieldType, KINDS, PLACED};
+use crate::syntax::NAMING_WORDS;
 use std::ops::Range;
 
 /// Where the cursor stands.
@@ -195,10 +196,8 @@ impl<'t> Cursor<'t> {
     /// Whether a line begins a field or a statement: what stands before it is unfinished.
     fn begins_entry(&self, line: &[Piece]) -> bool {
         let word = |piece: &Piece| {
-            matches!(
-                &self.text[piece.1.clone()],
-                "let" | "material" | "param" | "part" | "fn" | "for" | "import" | "assert"
-            )
+            let word = &self.text[piece.1.clone()];
+            NAMING_WORDS.contains(&word) || matches!(word, "import" | "assert")
         };
         match line {
             [(Lexeme::Word, _), colon, ..] if self.is(colon, ":") => true,

@@ -44,6 +44,9 @@ pub const RESERVED: &[&str] = &[
     "if", "then", "else", "fn", "to", "assert",
 ];
 
+/// The words that statements begin with in which a name follows.
+pub const NAMING_WORDS: &[&str] = &["let", "material", "param", "part", "fn", "for"];
+
 /// Whether a text is one word, as names are and the words of the language.
 pub fn is_word(text: &str) -> bool {
     Grammar::parse(Rule::word, text).is_ok_and(|found| found.as_str() == text)

@@ -1,5 +1,6 @@
 //! Line ends: which of them separate.
 
+use super::super::NAMING_WORDS;
 use super::super::ast::Comment;
 use super::super::errors;
 use super::{Cutter, Gap, Last, Level, is_word};
@@ -186,7 +187,7 @@ impl<'t> Cutter<'t> {
         }
         let Some((word, next)) = self.word_and_next(self.at) else { return false };
         match word {
-            "let" | "material" | "param" | "part" | "fn" | "for" => {
+            word if NAMING_WORDS.contains(&word) => {
                 self.word_and_next(next).is_some_and(|(name, _)| !matches!(name, "and" | "or" | "to"))
             }
             "import" => self.byte(next) == b'"',
