@@ -14,8 +14,17 @@ state=$(mktemp -d /tmp/rtc-farm-XXXXXX)
 chmod 755 "$state"
 pids=()
 
+# What failed is said last, below the logs.
+why=
+trap 'why="line $LINENO: $BASH_COMMAND"' ERR
+fail() {
+  why=$1
+  exit 1
+}
+
 finish() {
   code=$?
+  trap - ERR
   set +e
   # Jobs first: their processes are nobody's children here.
   [ -n "${SLURM_CONF:-}" ] && timeout 20 scancel --quiet --user=$(id -un) 2>/dev/null
@@ -25,6 +34,7 @@ finish() {
   for pid in "${pids[@]}"; do kill -9 "$pid" 2>/dev/null; done
   if [ "$code" != 0 ]; then
     tail -n 20 "$state"/*.log "$desk"/*.log 2>/dev/null
+    echo "failed: $why"
   fi
   rm -rf "$state"
   exit "$code"
@@ -35,11 +45,8 @@ wait_for() { # SECONDS WHAT COMMAND…
   local deadline=$((SECONDS + $1)) what=$2
   shift 2
   until "$@" >/dev/null 2>&1; do
-    if [ "$SECONDS" -ge "$deadline" ]; then
-      echo "waited in vain: $what"
-      exit 1
-    fi
-    sleep 0.2
+    [ "$SECONDS" -lt "$deadline" ] || fail "waited in vain: $what"
+    sleep 0.05
   done
 }
 
@@ -115,8 +122,8 @@ SCENE
 recipe() {
   local line
   line=$(grep -F "$1" "$scripts/README.md" | grep '^sbatch')
-  [ "$(wc -l <<<"$line")" = 1 ] || { echo "not one line of the README has \`$1\`" >&2; exit 1; }
-  sed -e 's/1-64/1-4/; s/array=17/array=4/; s/room.rt 64/room.rt 4/; s/--samples 4096/--samples 1200 --size 160x120 --checkpoint-every 1s/' \
+  [ "$(wc -l <<<"$line")" = 1 ] || fail "not one line of the README has \`$1\`"
+  sed -e 's/1-64/1-4/; s/array=17/array=4/; s/room.rt 64/room.rt 4/; s/--samples 4096/--samples 1200 --size 160x120 --checkpoint-every 16spp/' \
     -e 's/1-16/1-3/; s/480 16 frames/7 3 frames/; s/--frames 480/--frames 7/; s/--samples 256/--samples 8 --size 80x60/g' <<<"$line"
 }
 submit() { # WORDS: runs the line in the folder, and prints the number of the job that comes last.
@@ -141,35 +148,47 @@ timed=$(sbatch --parsable --array=1 --time=1 --signal=B:USR1@20 --chdir=farm --o
 (until [ -s farm/timed/1.exr.checkpoint ]; do sleep 0.2; done; state "$timed" >timed.state) &
 pids+=($!)
 
+# However fast the machine is, a share that has kept samples waits for what is to happen to it.
+process() { pgrep --full -- "--shard auto/4 -o parts/$1.exr" | head -n 1; }
+freeze() {
+  wait_for 120 "a checkpoint of share $1" test -s "farm/parts/$1.exr.checkpoint"
+  kill -STOP "$(process "$1")" || fail "share $1 was done before anything could happen to it"
+  [ ! -e "farm/parts/$1.exr" ] || fail "share $1 was done before anything could happen to it"
+}
+# It finds the signals that came in between.
+thaw() {
+  sleep 1
+  kill -CONT "$1" 2>/dev/null || true
+}
+for share in 2 3 4; do freeze "$share"; done
+
 # One worker is lost in the middle of its share: its daemon, the step's, and what runs under it.
-wait_for 120 "a checkpoint of share 2" test -s farm/parts/2.exr.checkpoint
 worker=$(squeue --noheader --format=%N --job="${array}_2")
 step=$(pgrep --full "slurmstepd: \[$(squeue --noheader --format=%A --job="${array}_2").batch\]")
-lost=$(pgrep --full -- "--shard auto/4 -o parts/2.exr" | head -n 1)
-kill -9 "${daemon[$worker]}" "$step" "$lost"
-[ ! -e farm/parts/2.exr ] || { echo "share 2 was done before its worker was lost"; exit 1; }
+kill -9 "${daemon[$worker]}" "$step" "$(process 2)"
 echo "  worker $worker is lost in the middle of share 2"
 
 # Whoever makes it again goes on from its checkpoint: asked for another picture, the same script refuses to.
 if (cd farm && SLURM_ARRAY_TASK_ID=2 ./shares.sbatch room.rt 4 parts "${flags[@]}" --seed 7 2>"$desk/other.log"); then
-  echo "the lost share would begin afresh"
-  exit 1
+  fail "the lost share would begin afresh"
 fi
-grep -q 'cannot go on from' "$desk/other.log" && grep -q -e '--seed 7` (kept: 0)' "$desk/other.log" || { cat "$desk/other.log"; exit 1; }
+grep -q 'cannot go on from' "$desk/other.log" && grep -q -e '--seed 7` (kept: 0)' "$desk/other.log" ||
+  fail "a share with another seed is refused otherwise: $(cat "$desk/other.log")"
 
 # One is preempted: it is asked to end, keeps its samples, and goes back into the queue.
-wait_for 120 "a checkpoint of share 3" test -s farm/parts/3.exr.checkpoint
-before=$(stat --format=%Y.%i farm/parts/3.exr.checkpoint)
+frozen=$(process 3)
 scontrol requeue "${array}_3"
+thaw "$frozen"
 wait_for 60 "share 3 to wait again" grep -q interrupted "farm/slurm-${array}_3.out"
-[ "$(stat --format=%Y.%i farm/parts/3.exr.checkpoint)" != "$before" ] || { echo "SIGTERM wrote no checkpoint"; exit 1; }
-[ ! -e farm/parts/3.exr ] || { echo "share 3 was done before it was put back"; exit 1; }
-echo "  share 3 is put back into the queue"
+kept=$(sed -n 's/^interrupted; kept \(.*\) in .*/\1/p' "farm/slurm-${array}_3.out")
+[ -n "$kept" ] || fail "SIGTERM kept nothing: $(cat "farm/slurm-${array}_3.out")"
+echo "  share 3 is put back into the queue with $kept"
 
 # And one is lost for good.
-wait_for 120 "a checkpoint of share 4" test -s farm/parts/4.exr.checkpoint
+frozen=$(process 4)
 scancel "${array}_4"
-[ ! -e farm/parts/4.exr ] || { echo "share 4 was done before it was cancelled"; exit 1; }
+thaw "$frozen"
+wait_for 60 "the end of share 4" grep -q interrupted "farm/slurm-${array}_4.out"
 
 again() { scontrol show job "${array}_$1" | grep -q 'Restarts=1'; }
 wait_for 90 "share 2 to be in the queue again" again 2
@@ -177,8 +196,10 @@ echo "  Slurm has put share 2 into the queue again by itself"
 looked() { (cd farm && "$rtc" merge --partial parts/*.exr -o look.png); }
 wait_for 300 "a first share to look at" looked
 wait_for 400 "the merge, job $merge" gone "$merge"
-grep -q 'share 4 of 4 is missing' "farm/slurm-$merge.out" || { cat "farm/slurm-$merge.out"; echo "not so"; exit 1; }
-[ ! -e farm/room.exr ] || { echo "there is a picture without share 4"; exit 1; }
+grep -q 'share 4 of 4 is missing' "farm/slurm-$merge.out" || fail "share 4 is not missed: $(cat "farm/slurm-$merge.out")"
+[ ! -e farm/room.exr ] || fail "there is a picture without share 4"
+grep -qF "went on from $kept in" "farm/slurm-${array}_3.out" ||
+  fail "share 3 has not gone on from $kept: $(cat "farm/slurm-${array}_3.out")"
 echo "  the merge names the share that is missing"
 
 merge=$(submit 'array=17 shares.sbatch')
@@ -190,7 +211,8 @@ echo "  the same bytes as one process with one thread makes alone"
 
 # By now its time is up; it was told so before.
 wait_for 200 "the end of its time, job $timed" gone "$timed"
-grep -q RUNNING timed.state && grep -q interrupted timed.log || { cat timed.state timed.log; exit 1; }
+grep -q RUNNING timed.state && grep -q interrupted timed.log ||
+  fail "a task whose time was up kept nothing: $(cat timed.state timed.log)"
 echo "  a task whose time was up kept its samples"
 
 # The line of the Kubernetes job, as a pod runs it.
@@ -205,7 +227,7 @@ PYTHON
 line=${line/exec rtc/exec \"\$RTC\"}
 line=${line/--samples 1024/--samples 16 --size 80x60}
 for index in 0 1 2 3 4 5 6 7; do
-  (cd pods && JOB_COMPLETION_INDEX=$index sh -c "$line" 2>"$desk/pod.log") || { cat "$desk/pod.log"; exit 1; }
+  (cd pods && JOB_COMPLETION_INDEX=$index sh -c "$line" 2>"$desk/pod.log") || fail "pod $index: $(cat "$desk/pod.log")"
 done
 "$rtc" merge pods/parts/*.exr -o pods/all.exr --quiet
 "$rtc" build pods/scene.rt --samples 16 --size 80x60 -o pods/one.exr -j 1 --quiet
@@ -215,7 +237,7 @@ echo "  eight pods, to the same bytes"
 # A film by runs of its frames; whoever puts it together makes none of them again.
 film=$(submit 'frames.sbatch film.rt 480')
 wait_for 300 "the film, job $film" gone "$film"
-[ "$(grep -c 'is done' "farm/slurm-$film.out")" = 7 ] || { echo "not all frames were done"; cat "farm/slurm-$film.out"; exit 1; }
+[ "$(grep -c 'is done' "farm/slurm-$film.out")" = 7 ] || fail "not all frames were done: $(cat "farm/slurm-$film.out")"
 "$rtc" build farm/film.rt --frames 7 --sweep "t = 0 to 1" --samples 8 --size 80x60 -o one.webp -j 1 --quiet
 cmp one.webp farm/film.webp
 echo "  a film of seven frames in three runs, to the same bytes"

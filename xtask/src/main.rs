@@ -15,10 +15,14 @@ mod readme;
 mod reference;
 mod tools;
 
+use std::collections::VecDeque;
 use std::fs;
+use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode};
-use std::time::Instant;
+use std::process::{Command, ExitCode, Stdio};
+use std::sync::mpsc;
+use std::thread;
+use std::time::{Duration, Instant};
 
 /// What a step ends with: nothing, or why it failed.
 type Outcome = Result<(), String>;
@@ -155,7 +159,7 @@ fn e2e(wanted: &[String]) -> Outcome {
         match fresh(&place.desk).and_then(|()| step(&place)) {
             Ok(()) => println!("e2e {name}: passed in {:.1} s", start.elapsed().as_secs_f64()),
             Err(why) => {
-                println!("e2e {name}: FAILED: {why}");
+                println!("e2e {name}: FAILED: {}", why.lines().next().unwrap_or_default());
                 failed.push(format!("{name}: {why}"));
             }
         }
@@ -230,12 +234,44 @@ fn fresh(folder: &Path) -> Outcome {
     fs::create_dir_all(folder).map_err(|error| format!("cannot make {}: {error}", folder.display()))
 }
 
+/// How many lines of a program that failed are said again at the end, where they are looked for.
+const LAST_LINES: usize = 24;
+
 /// Runs a program to its end; its output is shown as it comes.
 fn run(command: &mut Command) -> Outcome {
     let program = command.get_program().to_string_lossy().into_owned();
-    let status =
-        command.status().map_err(|error| format!("{program} is needed and does not start: {error}"))?;
-    if status.success() { Ok(()) } else { Err(format!("{program} ended with {status}")) }
+    let broken = |error: io::Error| format!("{program} is needed and does not start: {error}");
+    let (output, input) = io::pipe().map_err(broken)?;
+    command.stdout(input.try_clone().map_err(broken)?).stderr(input).env("PYTHONUNBUFFERED", "1");
+    let mut child = command.spawn().map_err(broken)?;
+    // The command would hold the pipe open.
+    command.stdout(Stdio::inherit()).stderr(Stdio::inherit());
+    let (send, lines) = mpsc::channel();
+    thread::spawn(move || {
+        for line in BufReader::new(output).split(b'\n').map_while(Result::ok) {
+            let line = String::from_utf8_lossy(&line).into_owned();
+            println!("{line}");
+            if send.send(line).is_err() {
+                return;
+            }
+        }
+    });
+    let status = child.wait().map_err(broken)?;
+    // What it has left behind may hold the pipe open for ever, and says nothing that is waited for.
+    let mut last = VecDeque::new();
+    while let Ok(line) = lines.recv_timeout(Duration::from_secs(1)) {
+        last.push_back(line);
+        if last.len() > LAST_LINES {
+            last.pop_front();
+        }
+    }
+    match status.success() {
+        true => Ok(()),
+        false => {
+            let said: String = last.iter().map(|line| format!("\n  {line}")).collect();
+            Err(format!("{program} ended with {status}; it said last:{said}"))
+        }
+    }
 }
 
 /// Runs one of the scripts in `xtask/e2e` in the step's folder.

@@ -22,7 +22,7 @@ export async function check(name, { flags = [], env = {}, text = SCENE }, does) 
     console.log(`  ${name}: ${Math.round(performance.now() - start)} ms`);
   } catch (error) {
     console.log(`  ${name}: FAILED: ${error.message}\n${watched?.said() ?? ""}`);
-    failed.push(name);
+    failed.push(`${name}: ${error.message}`);
   } finally {
     await watched?.end();
     for (const context of browser.contexts()) await context.close();
@@ -33,7 +33,7 @@ export async function check(name, { flags = [], env = {}, text = SCENE }, does) 
 export async function end() {
   await browser.close();
   if (failed.length === 0) return;
-  console.log(`failed: ${failed.join("; ")}`);
+  console.log(`failed:\n${failed.join("\n")}`);
   process.exit(1);
 }
 

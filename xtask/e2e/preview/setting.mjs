@@ -126,19 +126,16 @@ export const pixels = (page, size) =>
   }, size);
 
 /// Listens beside the page, from its own place: `heard()` gives the newest status, and of each picture that came since how
-/// many samples its pixels have and the corners of its tiles.
+/// many samples its pixels have, at least and at most.
 export async function eavesdrop(page) {
   await page.evaluate(async () => {
     const socket = new WebSocket(new URL("socket", location.href).href.replace("http", "ws"));
-    socket.binaryType = "arraybuffer";
     window.heard = { status: null, pictures: [] };
-    let tiles = [];
     socket.onmessage = ({ data }) => {
-      if (typeof data !== "string") return tiles.push([...new Uint32Array(data, 16, 4)]);
+      if (typeof data !== "string") return;
       const message = JSON.parse(data);
       if (message.type === "status") window.heard.status = message;
-      if (message.type === "begin") tiles = [];
-      if (message.type === "frame") window.heard.pictures.push({ samples: message.samples, tiles });
+      if (message.type === "frame") window.heard.pictures.push({ samples: message.samples });
     };
     await new Promise((resolve) => (socket.onopen = resolve));
   });
