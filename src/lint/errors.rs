@@ -86,6 +86,8 @@ pub(super) fn focus_misses(lint: &Lint, nearest: Option<f64>) -> Diagnostic {
 }
 
 pub(super) fn too_far(lint: &Lint, origin: OriginId, ratio: f64) -> Diagnostic {
+    // Nobody counts on beyond what a number holds.
+    let ratio = ratio.min(f64::MAX);
     let message = format!(
         "this thing is {ratio:.0e} times its own size away from the origin, and more than {MOST_RATIO:.0e} is imprecise"
     );

@@ -75,6 +75,17 @@ impl Builder<'_> {
     }
 }
 
+impl Builder<'_> {
+    /// `at: (0, 1, 0)m power: 60W`, without a comma: what begins behind a whole entry, if it has a name, is given.
+    pub(super) fn begins_otherwise(&self, pair: &Node) -> Option<Entry> {
+        let text = pair.as_str().trim_ascii_start();
+        let word = Some(leading(text, is_part)).filter(|word| is_name(word))?;
+        let start = pair.as_span().start() + pair.as_str().len() - text.len();
+        let name = Name { text: word.into(), span: self.at(start, start + word.len()) };
+        Some(Entry::Broken(Broken { name: Some(name), span: self.trimmed(pair) }))
+    }
+}
+
 /// Whether a character is one of a word.
 fn is_part(c: char) -> bool {
     c.is_alphanumeric() || c == '_'

@@ -15,6 +15,7 @@ pub(super) fn repetition<'t>(
 ) -> Deep<StatementKind> {
     let mut parts = parts.peekable();
     let variable = declared(builder, parts.next());
+    let mut half_typed = false;
     match parts.next_if(|part| part.as_rule() == Rule::binder) {
         Some(binder) if binder.as_str() == "in" => {}
         Some(sign) => builder.report(slips::missing_in(sign.as_str(), builder.span(&sign))),
@@ -46,9 +47,14 @@ pub(super) fn repetition<'t>(
             let mut slip = slips::missing_in("", variable.span.after());
             slip.fix = slip.fix.filter(|_| body.is_some());
             builder.report(slip);
+            half_typed = true;
         }
     }
     let (mut list, depth) = value::expression(builder, parts.next().expect("`for` has a head"));
+    // `for i i {`: no list is called like the variable.
+    if half_typed && matches!(&list.kind, ExprKind::Name(name) if *name == variable.text) {
+        list = invalid(list.span);
+    }
     let bodies = parts.clone().filter(|part| part.as_rule() == Rule::body);
     if let (ExprKind::Name(_) | ExprKind::Member { .. }, [changed, _]) =
         (&list.kind, &bodies.collect::<Vec<_>>()[..])

@@ -1,7 +1,7 @@
 //! What the grammar found in an item to entries of the tree, and what is said of its slips.
 
 use super::ast::{
-    Body, Broken, Comment, Construct, Entry, Expr, ExprKind, Field, Keyword, Name, Path, Prefix, Statement,
+    Body, Broken, Comment, Construct, Entry, Expr, ExprKind, Field, Keyword, Name, Path, Statement,
     StatementKind,
 };
 use super::cut::Item;
@@ -240,6 +240,7 @@ impl<'t> Builder<'t> {
                         self.unexpected(&pair, errors::unexpected_extra);
                     }
                     entries.last_mut().into_iter().for_each(spoil);
+                    entries.extend(self.begins_otherwise(&pair));
                 }
                 Rule::stray => self.stray(&pair),
                 Rule::EOI => {}
@@ -273,7 +274,7 @@ impl<'t> Builder<'t> {
         (entries, deepest)
     }
 
-    fn entry(&self, pair: Node<'t>, top: bool) -> Deep<Entry> {
+    pub(super) fn entry(&self, pair: Node<'t>, top: bool) -> Deep<Entry> {
         let (rule, span) = (pair.as_rule(), self.trimmed(&pair));
         if rule == Rule::marked {
             return self.marked(pair, top);
@@ -303,57 +304,6 @@ impl<'t> Builder<'t> {
 
     pub(super) fn expression(&self, mut pairs: Pairs<'t, Rule>) -> Deep<Expr> {
         value::expression(self, pairs.next().expect("the grammar puts an expression here"))
-    }
-
-    /// An entry with `@off` and the like before it.
-    fn marked(&self, pair: Node<'t>, top: bool) -> Deep<Entry> {
-        let span = self.trimmed(&pair);
-        let (mut prefixes, mut written, mut deepest) = (vec![], "", 0);
-        for pair in pair.into_inner() {
-            if pair.as_rule() == Rule::mark {
-                written = pair.as_str().trim_ascii_end();
-                let (prefix, depth) = self.prefix(pair);
-                deepest = deepest.max(depth);
-                prefixes.extend(prefix);
-                continue;
-            }
-            let (mut entry, depth) = self.entry(pair, top);
-            match &mut entry {
-                Entry::Statement(statement) => {
-                    statement.doc = docs::of(&self.source, span, statement.span);
-                    statement.prefixes = prefixes;
-                }
-                Entry::Field(field) => {
-                    if let Some(prefix) = prefixes.first() {
-                        let mark = format!("@{}", prefix.name.text);
-                        self.report(statements::marks_field(&mark, &field.name.text, prefix.span));
-                    }
-                }
-                Entry::Broken(broken) => broken.span = span,
-                // The grammar knows nothing of them.
-                Entry::Rows(_) => {}
-            }
-            return self.checked(entry, depth.max(deepest), span);
-        }
-        if let Some(last) = prefixes.last() {
-            self.report(statements::marks_nothing(last, written));
-        }
-        (Entry::Broken(Broken { name: None, span }), 0)
-    }
-
-    fn prefix(&self, pair: Node<'t>) -> Deep<Option<Prefix>> {
-        let span = self.trimmed(&pair);
-        let mut inner = pair.into_inner();
-        let Some(word) = inner.next().filter(|word| word.as_rule() == Rule::word) else {
-            self.report(statements::missing_mark(Span { end: span.start + 1, ..span }));
-            return (None, 0);
-        };
-        let name = self.name(&word);
-        let Some(details) = inner.next() else {
-            return (Some(Prefix { name, arguments: None, span }), 0);
-        };
-        let (arguments, depth) = value::arguments(self, details);
-        (Some(Prefix { name, arguments: Some(arguments), span }), depth)
     }
 
     /// `{ … }`
@@ -443,9 +393,14 @@ impl<'t> Builder<'t> {
         self.checked(self.plain(StatementKind::Thing { name, construct }, span), depth, span)
     }
 
+    /// The doc of a statement that begins there, where its marks begin at `whole`.
+    pub(super) fn doc(&self, whole: Span, statement: Span) -> Option<SmolStr> {
+        docs::of(&self.source, whole, statement)
+    }
+
     /// A statement with nothing before it but its doc.
     pub(super) fn plain(&self, kind: StatementKind, span: Span) -> Entry {
-        let doc = docs::of(&self.source, span, span);
+        let doc = self.doc(span, span);
         Entry::Statement(Box::new(Statement { doc, prefixes: vec![], kind, span }))
     }
 

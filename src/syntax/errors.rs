@@ -1,10 +1,12 @@
 //! What is said of each slip: one small function a diagnostic.
 
+mod brackets;
 mod habits;
 mod limits;
 mod literals;
 pub(super) mod statements;
 
+pub(super) use brackets::*;
 pub(super) use habits::*;
 pub(super) use limits::*;
 pub(super) use literals::*;
@@ -169,11 +171,25 @@ pub(super) fn unexpected_extra(token: &str, span: Span) -> Diagnostic {
 }
 
 /// Text behind a value inside parentheses, or inside a list.
-pub(super) fn unexpected_in_brackets(token: &str, span: Span, closer: &str) -> Diagnostic {
+/// `behind` is where the value ends that stands before it.
+pub(super) fn unexpected_in_brackets(
+    token: &str,
+    span: Span,
+    closer: &str,
+    behind: Option<Span>,
+) -> Diagnostic {
     let diagnostic = unexpected(token, span).at(format!("a comma or `{closer}` belongs before this"));
     match token {
         "°" => diagnostic.help("an angle is written `45deg`").fix(span, "deg"),
-        _ => diagnostic.help("separate the values by commas"),
+        _ => {
+            let diagnostic = diagnostic.help("separate the values by commas");
+            let begins_value =
+                token.starts_with(|c: char| c.is_alphanumeric() || matches!(c, '#' | '(' | '"'));
+            match behind.filter(|_| begins_value) {
+                Some(behind) => diagnostic.offer("add a comma", vec![(behind, ",".to_string())]),
+                None => diagnostic,
+            }
+        }
     }
 }
 
@@ -346,57 +362,6 @@ pub(super) fn missing_let(name: &str, span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0001, format!("`let` is missing before `{name}`"), span)
         .at("a definition needs its word")
         .help(format!("write `let {name} = …`, or `material {name} = …` for a material"))
-}
-
-// --- E0002: unclosed --------------------------------------------------------------------------------------
-
-/// Brackets without a closer, the innermost first, and where that showed.
-pub(super) fn unclosed(openers: impl Iterator<Item = Span>, closer: char, seen: Option<Span>) -> Diagnostic {
-    let opener = match closer {
-        ')' => '(',
-        ']' => '[',
-        _ => '{',
-    };
-    let mut openers = openers;
-    let first = openers.next().expect("at least one bracket is open");
-    let mut diagnostic = Diagnostic::new(Code::E0002, format!("this `{opener}` is never closed"), first)
-        .at("opened here")
-        .help(format!("add the missing `{closer}`"));
-    if let Some(seen) = seen {
-        diagnostic = diagnostic.label(seen, "still open when this begins");
-    }
-    openers.take(3).fold(diagnostic, |diagnostic, opener| diagnostic.label(opener, "nor is this one"))
-}
-
-/// `/*` without its end.
-pub(super) fn unclosed_comment(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0002, "this comment is never closed", span)
-        .at("the rest of the file is a comment")
-        .help("end it with `*/`, or begin each of its lines with `//`")
-}
-
-/// `"` without its end on the line.
-pub(super) fn unclosed_string(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0002, "this text is not closed on its line", span)
-        .at("opened here")
-        .help("end it with `\"` on the same line; a line end inside it is written `\\n`")
-}
-
-/// `(0, 1]`
-pub(super) fn wrong_closer(span: Span, opener: Span, closer: char, right: char) -> Diagnostic {
-    Diagnostic::new(Code::E0002, format!("`{closer}` does not close what is open"), span)
-        .at(format!("`{right}` is wanted"))
-        .label(opener, "opened here")
-        .help(format!("write `{right}`"))
-        .fix(span, right)
-}
-
-/// A closer without an opener.
-pub(super) fn stray_closer(span: Span, closer: char) -> Diagnostic {
-    Diagnostic::new(Code::E0001, format!("`{closer}` closes nothing"), span)
-        .at("nothing of its kind is open here")
-        .help("delete it, or open the bracket it should close")
-        .offer("delete it", vec![(span, String::new())])
 }
 
 // --- E0003: `=` or `;` ------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ const MAX_COMPARED: usize = 16;
 const LONG: usize = 6;
 
 /// The words that statements begin with, those that are told apart by the least first.
-const FIRST: &[&str] = &["let", "material", "param", "import", "fn", "for", "if", "assert"];
+const FIRST: &[&str] = &["let", "material", "param", "import", "fn", "for", "if", "assert", "else"];
 
 /// Whether a word is another one with a slip of typing, or in other letters.
 pub(crate) fn is_near(word: &str, keyword: &str) -> bool {
@@ -106,6 +106,8 @@ fn has_form(keyword: &str, line: &str) -> bool {
             let head = line.split_once('{').map_or("", |(head, _)| head);
             !line.starts_with('<') && ["==", "!=", "<", ">"].iter().any(|sign| head.contains(sign))
         }
+        // Its braces could be those of a thing.
+        "else" => name == "if",
         _ => !(behind.is_empty() || behind.starts_with([':', '{', '=']) && !behind.starts_with("==")),
     }
 }

@@ -18,6 +18,7 @@ mod format;
 mod items;
 mod literal;
 mod lookalikes;
+mod marks;
 mod mistyped;
 mod places;
 mod remembered;

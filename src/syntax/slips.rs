@@ -2,7 +2,7 @@
 
 use super::BLANKS;
 use super::angled;
-use super::ast::{Broken, Entry, Expr, ExprKind, Field, Name, StatementKind, TypeName};
+use super::ast::{Argument, Broken, Entry, Expr, ExprKind, Field, Name, StatementKind, TypeName};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements};
 use super::value;
@@ -344,9 +344,14 @@ impl<'t> Builder<'t> {
             let whole = self.at(start, start + end + 2);
             return thing.then(|| (errors::quoted_name(name.as_ref(), whole), name));
         }
-        let end = text.find(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '-'))).unwrap_or(text.len());
+        let is_sign = |c: char| !c.is_ascii() && !c.is_alphanumeric() && !c.is_whitespace();
+        let is_part = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-') || is_sign(c);
+        let end = text.find(|c| !is_part(c)).unwrap_or(text.len());
         let name = &text[..end];
         let thing = text[end..].trim_start_matches(BLANKS).starts_with('{');
+        if thing && name.contains(is_sign) {
+            return Some((errors::signs_in_name(name, self.at(start, start + end)), None));
+        }
         let apart = name.starts_with(|c: char| c.is_ascii_digit()) || name.contains('-');
         let sound = apart && !name.starts_with('-') && !name.ends_with('-');
         (thing && sound).then(|| (errors::no_name(kind, name, self.at(start, start + end)), None))
@@ -377,6 +382,14 @@ impl<'t> Builder<'t> {
         {
             return Entry::Broken(Broken { name, span });
         }
+        let behind = self.after(word_end);
+        let start = word_end + behind.len() - behind.trim_start_matches(BLANKS).len();
+        if start > word_end
+            && let Some((diagnostic, given)) = self.no_name(&name.text, start)
+        {
+            self.report(diagnostic);
+            return Entry::Broken(Broken { name: given, span });
+        }
         self.report(match name.text.as_str() {
             keyword @ ("let" | "material") if top || keyword == "let" => {
                 errors::missing_name(keyword, name.span)
@@ -396,6 +409,14 @@ impl<'t> Builder<'t> {
         let ends = if rest.is_empty() { !self.continued() } else { rest.starts_with(['\n', '}', ',', ')']) };
         let replacement = if ends { "" } else { "," };
         self.sink.borrow_mut().push_semicolon(self.span(pair), replacement);
+    }
+
+    /// `min(1m 2m)`: text behind a value among others.
+    pub(super) fn extra_value(&self, pair: &Node, closer: &str, before: Option<&Argument>) {
+        // Behind one value one comma mends it.
+        let alone = pair.as_str().split_whitespace().count() == 1;
+        let behind = before.filter(|_| alone).map(|before| before.value.span.after());
+        self.unexpected(pair, |token, span| errors::unexpected_in_brackets(token, span, closer, behind));
     }
 
     /// `let ball = sphere radius: 1m`: whether the brace behind the kind is the slip.

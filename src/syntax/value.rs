@@ -411,11 +411,9 @@ fn elements(builder: &Builder, pair: Node) -> Elements {
                 found.arguments.push(Argument { name: name.take(), value });
             }
             Rule::extra => {
-                builder.unexpected(&pair, |token, span| errors::unexpected_in_brackets(token, span, closer));
+                builder.extra_value(&pair, closer, found.arguments.last());
                 // What the value was to be is not known; nor is how many there were to be.
-                if let Some(last) = found.arguments.last_mut() {
-                    last.value.kind = ExprKind::Invalid;
-                }
+                found.arguments.last_mut().into_iter().for_each(|last| last.value.kind = ExprKind::Invalid);
             }
             Rule::of_each => {
                 let start = builder.span(&pair);

@@ -18,8 +18,10 @@ const LENGTH: &[u8] = b"content-length:";
 pub enum Frame {
     /// The body of a message.
     Body(Vec<u8>),
-    /// A message that was passed over, and why.
+    /// A head that tells no length, and why.
     Refused(String),
+    /// A message that was passed over, and its length.
+    TooLong(u64),
 }
 
 /// The next message; none where the stream has ended, also within a message.
@@ -33,8 +35,7 @@ pub fn read(input: &mut impl BufRead) -> io::Result<Option<Frame>> {
         Ok(length) if length <= MOST_BODY => length,
         Ok(length) => {
             let passed = io::copy(&mut input.take(length), &mut io::sink())?;
-            let reason = format!("a message has at most {MOST_BODY} bytes, this one has {length}");
-            return Ok((passed == length).then_some(Frame::Refused(reason)));
+            return Ok((passed == length).then_some(Frame::TooLong(length)));
         }
         Err(reason) => return Ok(Some(Frame::Refused(reason))),
     };
@@ -176,7 +177,7 @@ mod tests {
         let head = format!("Content-Length: {}\r\n\r\n", MOST_BODY + 1);
         let mut input =
             io::BufReader::new(head.as_bytes().chain(long).chain(&b"Content-Length: 2\r\n\r\nok"[..]));
-        assert!(matches!(read(&mut input).unwrap(), Some(Frame::Refused(_))));
+        assert_eq!(read(&mut input).unwrap(), Some(Frame::TooLong(MOST_BODY + 1)));
         assert_eq!(read(&mut input).unwrap(), Some(body("ok")));
     }
 

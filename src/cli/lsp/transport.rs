@@ -8,7 +8,8 @@ use super::frame::{self, Frame};
 use super::message::{self, Refusal};
 use crate::cli::interrupt::Interrupt;
 use crossbeam_channel::{Receiver, Sender, bounded};
-use lsp_server::{Connection, Message};
+use gen_lsp_types as lsp;
+use lsp_server::{Connection, Message, Notification};
 use std::io::{self, BufReader, stdin, stdout};
 use std::thread::Builder;
 
@@ -59,6 +60,12 @@ fn read_all(sender: Sender<Message>) {
         let read = match frame {
             Frame::Body(body) => message::read(&body),
             Frame::Refused(reason) => Err(Refusal::unreadable(reason)),
+            Frame::TooLong(length) => {
+                // Whoever opened such a document sees nothing else of it.
+                let _ = frame::write(&mut stdout().lock(), &message::body(&too_long(length)));
+                let most = frame::MOST_BODY;
+                Err(Refusal::unreadable(format!("a message has at most {most} bytes, this one has {length}")))
+            }
         };
         let goes_on = match read {
             Ok(message) => sender.send(message).is_ok(),
@@ -68,6 +75,19 @@ fn read_all(sender: Sender<Message>) {
             return;
         }
     }
+}
+
+/// Tells a person that what was sent is not followed.
+fn too_long(length: u64) -> Message {
+    let mebibytes = |bytes: u64| bytes.div_ceil(1 << 20);
+    let message = format!(
+        "rtc does not follow a document or an edit of {} MiB: {} MiB are the most. Split it by `import`, or read its numbers with \
+         `table`; a document that was open already is followed again once it is closed and opened.",
+        mebibytes(length),
+        mebibytes(frame::MOST_BODY)
+    );
+    let params = lsp::ShowMessageParams { kind: lsp::MessageType::Warning, message };
+    Notification::new(lsp::LspNotificationMethod::WindowShowMessage.as_str().into(), params).into()
 }
 
 /// Until everything is written or nobody reads.

@@ -81,7 +81,7 @@ impl Cutter<'_> {
     /// Closes the brackets above the level `keep`, which `at` shows to be unclosed: in the white space before
     /// this token where there is enough of it, else by blotting them.
     pub(super) fn close_above(&mut self, keep: usize, seen: Option<Span>) {
-        self.report_unclosed(keep, seen);
+        self.report_unclosed(keep, seen, true);
         let closers: Vec<u8> =
             self.levels[keep..].iter().rev().map(|level| closer_of(level.bracket)).collect();
         if self.at - self.end >= closers.len() {
@@ -99,7 +99,8 @@ impl Cutter<'_> {
         let keep = self.levels.iter().rposition(|level| level.bracket == b'{').map_or(0, |index| index + 1);
         let count = self.levels.len() - keep;
         let seen = self.word_span();
-        self.report_unclosed(keep, Some(seen));
+        // Closers may follow, which are overlooked.
+        self.report_unclosed(keep, Some(seen), false);
         self.edits.push((gap.start..gap.end, b' '));
         if keep == 0 && self.splits {
             // The end of the item closes them.
@@ -133,14 +134,28 @@ impl Cutter<'_> {
         }
     }
 
-    pub(super) fn report_unclosed(&mut self, keep: usize, seen: Option<Span>) {
+    /// `closes` is whether it is mended by closers at the end of what is before.
+    pub(super) fn report_unclosed(&mut self, keep: usize, seen: Option<Span>, closes: bool) {
         if self.skipped || self.ended_in_comment || keep == self.levels.len() {
             return;
         }
         let openers = self.levels[keep..].iter().rev().map(|level| self.span(level.at, level.at + 1));
         let closer = closer_of(self.innermost());
-        let diagnostic = errors::unclosed(openers, char::from(closer), seen);
+        let closers = closes.then(|| (self.span(self.end, self.end), self.closers(keep)));
+        let diagnostic = errors::unclosed(openers, char::from(closer), seen, closers);
         self.out.sink.push(diagnostic);
+    }
+
+    /// What closes the brackets above the level `keep`: braces as they would be written.
+    fn closers(&self, keep: usize) -> String {
+        let closer = |level: &Level| match level.bracket {
+            b'{' if self.bytes[level.at..self.end].contains(&b'\n') => {
+                format!("\n{}}}", " ".repeat(level.indent))
+            }
+            b'{' => " }".to_string(),
+            other => char::from(closer_of(other)).to_string(),
+        };
+        self.levels[keep..].iter().rev().map(closer).collect()
     }
 
     pub(super) fn stray_closer(&mut self) {

@@ -25,7 +25,7 @@ impl<'t> Cutter<'t> {
 
     /// Ends the item, with whatever brackets are open; the grammar takes the end of the text for their closers.
     pub(super) fn close_all(&mut self, seen: Option<Span>) {
-        self.report_unclosed(0, seen);
+        self.report_unclosed(0, seen, true);
         self.levels.clear();
         (self.open, self.beyond) = ([0; 3], 0);
         self.layout = self.rescans >= MAX_RESCANS;

@@ -74,6 +74,13 @@ pub(in crate::syntax) fn foreign_body(kind: &str, span: Span, angled: Span) -> D
         .help(format!("write {}", written(kind)))
 }
 
+/// `sphere ★ { … }`
+pub(in crate::syntax) fn signs_in_name(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("`{name}` cannot be a name"), span)
+        .at("has signs that are no letters")
+        .help("a name is made of the letters a to z, digits and `_`")
+}
+
 /// `sphere 2nd { … }`, `sphere my-ball { … }`
 pub(in crate::syntax) fn no_name(kind: &str, name: &str, span: Span) -> Diagnostic {
     let diagnostic = Diagnostic::new(Code::E0001, format!("`{name}` cannot be a name"), span);

@@ -34,8 +34,11 @@ pub(in crate::syntax) fn unfinished(word: &str, span: Span) -> Diagnostic {
     missing(&format!("this `{word}` cannot be understood"), span, word).at("is written otherwise")
 }
 
-/// A word of the language with which no statement begins: `else { … }`.
+/// A word of the language where a statement begins that is not of its form: `else { … }`, `let: x = 3`.
 pub(in crate::syntax) fn begins_nothing(word: &str, span: Span) -> Diagnostic {
+    if matches!(word, "param" | "part" | "import" | "for" | "if" | "fn" | "assert" | "material" | "let") {
+        return unfinished(word, span);
+    }
     missing(&format!("unexpected `{word}`"), span, word).at("nothing begins with this word")
 }
 

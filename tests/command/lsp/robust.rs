@@ -300,6 +300,9 @@ fn a_huge_message_is_passed_over() {
     for _ in 0..65 {
         client.send_bytes(&block);
     }
+    let told = client.wait("a message", |message| message["method"] == "window/showMessage");
+    let told = told["params"]["message"].as_str().unwrap();
+    assert!(told.contains("65 MiB: 64 MiB are the most"), "{told}");
     assert_eq!(client.answer(&Value::Null).unwrap_err()["code"], -32700);
     // One that would take gigabytes once it is values.
     let many = format!("{{\"method\":\"x\",\"params\":[{}0]}}", "0,".repeat(10 << 20));
