@@ -36,10 +36,14 @@ impl Checker<'_> {
     /// Everything that must be given is. `place` is where the thing is used, `body` where it is made there.
     pub(super) fn complete(&mut self, making: Making, place: Span, body: Option<Span>) {
         let Kind::BuiltIn(kind) = making.kind else { return };
+        let body = body.map(|body| (body, self.text(body)));
+        // That its brace is open was said, and what was to come is not known.
+        if body.is_some_and(|(_, text)| !text.ends_with('}')) {
+            return;
+        }
         for (index, field) in kind.fields().enumerate() {
             if field.default == Preset::Required && !making.given.has(index) {
                 let diagnostic = errors::missing(kind, field, place);
-                let body = body.map(|body| (body, self.text(body)));
                 self.report(match body {
                     Some((body, text)) => errors::offer_field(diagnostic, field, body, text),
                     None => diagnostic,

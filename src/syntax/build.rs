@@ -1,7 +1,7 @@
 //! What the grammar found in an item to entries of the tree, and what is said of its slips.
 
 use super::ast::{
-    Body, Broken, Comment, Construct, Entry, Expr, ExprKind, Field, Keyword, Name, Path, Statement,
+    Argument, Body, Broken, Comment, Construct, Entry, Expr, ExprKind, Field, Keyword, Name, Path, Statement,
     StatementKind,
 };
 use super::cut::Item;
@@ -63,6 +63,8 @@ pub(super) struct Builder<'t> {
     pub(super) declares: Cell<bool>,
     /// Whether it is in a group, outside of the things in it.
     pub(super) grouped: Cell<bool>,
+    /// What was to be fields of the body that is being read, and stands in parentheses that were never closed.
+    swallowed: RefCell<Vec<Name>>,
 }
 
 impl<'t> Builder<'t> {
@@ -78,11 +80,21 @@ impl<'t> Builder<'t> {
             unbraced: Cell::new(false),
             declares: Cell::new(true),
             grouped: Cell::new(false),
+            swallowed: RefCell::default(),
         }
     }
 
     pub(super) fn report(&self, diagnostic: crate::diagnostic::Diagnostic) {
         self.sink.borrow_mut().push(diagnostic);
+    }
+
+    /// `at: (0, 1, 2m, radius: 1m }`: the names among what parentheses hold that were never closed count as given behind them. Gives
+    /// whether there are any.
+    pub(super) fn swallow(&self, arguments: &mut [Argument]) -> bool {
+        let mut swallowed = self.swallowed.borrow_mut();
+        let known = swallowed.len();
+        swallowed.extend(arguments.iter_mut().filter_map(|argument| argument.name.take()));
+        swallowed.len() > known
     }
 
     /// How much was reported.
@@ -268,6 +280,10 @@ impl<'t> Builder<'t> {
                     if !other && (belongs || !matches!(entry, Entry::Field(_))) {
                         entries.push(entry);
                     }
+                    let swallowed = self.swallowed.take().into_iter();
+                    let given =
+                        swallowed.map(|name| Entry::Broken(Broken { span: name.span, name: Some(name) }));
+                    entries.extend(given);
                 }
             }
         }

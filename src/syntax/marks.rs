@@ -3,7 +3,7 @@
 use super::ast::{Broken, Entry, Prefix};
 use super::build::{Builder, Deep, Node};
 use super::errors::statements;
-use super::{Rule, value};
+use super::{Rule, elements};
 use crate::span::Span;
 
 impl<'t> Builder<'t> {
@@ -54,7 +54,7 @@ impl<'t> Builder<'t> {
         let Some(details) = inner.next() else {
             return (Some(Prefix { name, arguments: None, span }), 0);
         };
-        let (arguments, depth) = value::arguments(self, details);
+        let (arguments, depth) = elements::arguments(self, details);
         (Some(Prefix { name, arguments: Some(arguments), span }), depth)
     }
 }

@@ -13,6 +13,7 @@ mod branches;
 mod build;
 mod cut;
 mod docs;
+mod elements;
 mod errors;
 mod format;
 mod items;

@@ -1,10 +1,11 @@
 //! Expressions: the flat list that the grammar gives becomes a tree by precedence.
 
 use super::angled;
-use super::ast::{Argument, BinaryOp, Expr, ExprKind, Name, Path, UnaryOp};
+use super::ast::{BinaryOp, Expr, ExprKind, Name, Path, UnaryOp};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
+use super::elements::{elements, group, list};
 use super::errors::{self, statements};
-use super::literal::{color, literal, text, unit_name};
+use super::literal::{color, literal, text};
 use crate::span::Span;
 use pest::pratt_parser::{Assoc, Op, PrattParser};
 use smol_str::SmolStr;
@@ -93,7 +94,7 @@ fn joined<'t>(builder: &Builder, pairs: impl Iterator<Item = Node<'t>> + Clone, 
 }
 
 /// The expression, unless it is too deep.
-fn checked(builder: &Builder, expr: Expr, depth: usize, place: Span) -> Deep<Expr> {
+pub(super) fn checked(builder: &Builder, expr: Expr, depth: usize, place: Span) -> Deep<Expr> {
     if builder.allows(depth, place) { (expr, depth) } else { invalid(expr.span) }
 }
 
@@ -361,136 +362,14 @@ fn conditional(builder: &Builder, pair: Node) -> Deep<Expr> {
     checked(builder, Expr { kind: ExprKind::If { condition, then, otherwise }, span }, depth, span)
 }
 
-/// The arguments in the parentheses of a prefix, and their depth.
-pub(super) fn arguments(builder: &Builder, pair: Node) -> Deep<Vec<Argument>> {
-    let Elements { arguments, depth, .. } = elements(builder, pair);
-    (arguments, depth)
-}
-
-/// What stands between parentheses.
-struct Elements {
-    arguments: Vec<Argument>,
+/// An expression with its unit behind the parenthesis, if there is one.
+pub(super) fn scaled(
+    builder: &Builder,
+    value: Expr,
     depth: usize,
     unit: Option<Name>,
-    /// The `=` behind the first name, where no values have names.
-    equals: Option<Span>,
-    /// Just behind the closing parenthesis.
-    end: u32,
-    /// Whether the closing parenthesis was written.
-    closed: bool,
-}
-
-fn elements(builder: &Builder, pair: Node) -> Elements {
-    let mut found = Elements {
-        arguments: vec![],
-        depth: 0,
-        unit: None,
-        equals: None,
-        end: builder.span(&pair).end,
-        closed: true,
-    };
-    let mut name = None;
-    let call = !matches!(pair.as_rule(), Rule::group | Rule::list);
-    let closer = if pair.as_rule() == Rule::list { "]" } else { ")" };
-    for pair in pair.into_inner() {
-        match pair.as_rule() {
-            Rule::label => {
-                let (label, sign) = label(&pair, builder);
-                match sign {
-                    Some(sign) if call => {
-                        let edit = Span { start: label.span.end, ..sign };
-                        builder.report(errors::equals_in_field(&label.text, sign, edit));
-                    }
-                    sign => found.equals = found.equals.or(sign),
-                }
-                name = Some(label);
-            }
-            Rule::expr => {
-                let (value, depth) = expression(builder, pair);
-                found.depth = found.depth.max(depth);
-                found.arguments.push(Argument { name: name.take(), value });
-            }
-            Rule::extra => {
-                builder.extra_value(&pair, closer, found.arguments.last());
-                // What the value was to be is not known; nor is how many there were to be.
-                found.arguments.last_mut().into_iter().for_each(|last| last.value.kind = ExprKind::Invalid);
-            }
-            Rule::of_each => {
-                let start = builder.span(&pair);
-                let word = Span { end: start.start + "for".len() as u32, ..start };
-                builder.report(errors::of_each(word));
-                let value = Expr { kind: ExprKind::Invalid, span: start };
-                found.arguments = vec![Argument { name: None, value }];
-            }
-            Rule::semicolon => builder.semicolon(&pair),
-            _ => {
-                let close = builder.span(&pair);
-                // Where none was written, one may have been put into the white space before what showed that.
-                found.closed = pair.as_str().starts_with([')', ']']) && !builder.is_blank(close.start);
-                found.end = if found.closed { close.start + 1 } else { close.start };
-                found.unit = pair.into_inner().next().map(|unit| unit_name(builder, unit));
-            }
-        }
-    }
-    found
-}
-
-/// `name:`, or the slip `name =`, with the place of its sign.
-fn label(pair: &Node, builder: &Builder) -> (Name, Option<Span>) {
-    let place = builder.trimmed(pair);
-    let name = builder.name(&pair.clone().into_inner().next().expect("a label has a name"));
-    let equals = pair.as_str().trim_ascii_end().ends_with('=');
-    (name, equals.then_some(Span { start: place.end - 1, ..place }))
-}
-
-/// `(a)`, `(a, b)`, either with a unit behind it.
-fn group(builder: &Builder, pair: Node) -> Deep<Expr> {
-    let outer = builder.span(&pair);
-    let Elements { arguments, depth, unit, equals, end, closed } = elements(builder, pair);
-    let span = Span { end, ..outer };
-    // `(a = b)`: whether they are equal is asked.
-    if let ([Argument { name: Some(name), .. }], Some(sign)) = (&arguments[..], equals) {
-        builder.report(errors::foreign_operator("=", "==", sign, builder.asks(name.span)));
-        return invalid(span);
-    }
-    // One for all of them.
-    if let Some(name) = arguments.iter().find_map(|argument| argument.name.as_ref()) {
-        builder.report(errors::label_outside_call(&name.text, name.span));
-    }
-    let mut values: Vec<Expr> = arguments.into_iter().map(|argument| argument.value).collect();
-    let kind = match values.len() {
-        // What was to stand in them is not known; that they are open was said.
-        _ if !closed => ExprKind::Invalid,
-        0 => {
-            builder.report(errors::empty_parentheses(span));
-            ExprKind::Invalid
-        }
-        1 => ExprKind::Paren(Box::new(values.remove(0))),
-        _ => ExprKind::Tuple(values),
-    };
-    let (expr, depth) = checked(builder, Expr { kind, span }, depth + 1, span);
-    scaled(builder, expr, depth, unit, outer)
-}
-
-/// `[a, b]`
-fn list(builder: &Builder, pair: Node) -> Deep<Expr> {
-    let span = builder.span(&pair);
-    let Elements { arguments, depth, unit, end, .. } = elements(builder, pair);
-    // One for all of them.
-    if let Some(name) = arguments.iter().find_map(|argument| argument.name.as_ref()) {
-        builder.report(errors::label_outside_call(&name.text, name.span));
-    }
-    if let Some(unit) = unit {
-        let (open, close) = (Span { end: span.start + 1, ..span }, Span { start: end - 1, end, ..span });
-        builder.report(errors::list_with_unit(unit.span, open, close));
-        return invalid(span);
-    }
-    let values = arguments.into_iter().map(|argument| argument.value).collect();
-    checked(builder, Expr { kind: ExprKind::List(values), span }, depth + 1, span)
-}
-
-/// An expression with its unit behind the parenthesis, if there is one.
-fn scaled(builder: &Builder, value: Expr, depth: usize, unit: Option<Name>, span: Span) -> Deep<Expr> {
+    span: Span,
+) -> Deep<Expr> {
     let Some(unit) = unit else { return (value, depth) };
     let kind = ExprKind::Scaled { value: Box::new(value), unit };
     checked(builder, Expr { kind, span }, depth + 1, span)

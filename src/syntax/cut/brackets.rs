@@ -141,6 +141,9 @@ impl Cutter<'_> {
         }
         let openers = self.levels[keep..].iter().rev().map(|level| self.span(level.at, level.at + 1));
         let closer = closer_of(self.innermost());
+        // Where fields may have come into parentheses, these end before them.
+        let level = &self.levels[self.levels.len() - 1];
+        let closes = closes && (level.bracket == b'{' || !self.bytes[level.at..self.end].contains(&b':'));
         let closers = closes.then(|| (self.span(self.end, self.end), self.closers(keep)));
         let diagnostic = errors::unclosed(openers, char::from(closer), seen, closers);
         self.out.sink.push(diagnostic);
