@@ -206,16 +206,19 @@ impl Making {
             self.blocks.iter_mut().for_each(|block| block.aim = goal.max(block.samples));
             return (least >= goal).then_some(Limit::Samples);
         };
-        if self.judged.is_none() && most > limits.rung(0) {
-            // Of a picture that was to have so many samples: they are judged as they are. If they do, no more is decided.
+        if self.judged.is_none() && most >= limits.rung(0) {
+            // Of a picture that was to have so many samples: how many these were says nothing of noise.
+            self.blocks.iter_mut().for_each(|block| block.aim = most);
             if least < most {
-                self.blocks.iter_mut().for_each(|block| block.aim = most);
                 return None;
             }
-            if !noisy(&self.film, shown, wanted).contains(&true) {
-                return Some(Limit::Noise);
+            if most > limits.rung(0) {
+                // They are judged as they are. If they do, no more is decided.
+                if !noisy(&self.film, shown, wanted).contains(&true) {
+                    return Some(Limit::Noise);
+                }
+                self.judged = Some(shown);
             }
-            self.judged = Some(shown);
         }
         let is_open = |block: &Block| block.samples < block.aim;
         let unjudged = most < limits.rung(0);

@@ -40,7 +40,7 @@ pub(super) fn repetition<'t>(
                 // `for i of list { … }`
                 builder.report(slips::missing_in(word, place));
                 let (list, span) = (invalid(place), span.after());
-                let (body, depth) = body.map_or_else(|| (empty(span), 0), |body| builder.body(body));
+                let (body, depth) = body.map_or_else(|| (empty(span), 0), |body| builder.block(body));
                 return (StatementKind::For { variable, list, body }, depth + 1);
             }
             // Without a body, the word may be half typed.
@@ -90,7 +90,7 @@ fn block<'t>(
             let kind = errors::first_token(text);
             builder.report(slips::unbraced_thing(word, kind, builder.at(start, start + kind.len())));
             // The slips in the body of the thing are still worth knowing.
-            parts.next().into_iter().for_each(|body| drop(builder.body(body)));
+            parts.next().into_iter().for_each(|body| drop(builder.block(body)));
             return (empty(span.after()), 0);
         }
         if known {
@@ -103,7 +103,7 @@ fn block<'t>(
         return unbraced(builder, word, Span::new(span.source, start, start + 1), span);
     }
     match parts.next_if(|part| part.as_rule() == Rule::body) {
-        Some(body) => builder.body(body),
+        Some(body) => builder.block(body),
         None => {
             let place = head.span.after();
             if known {
@@ -145,7 +145,7 @@ pub(super) fn choice<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Sp
             builder.report(slips::then_in_statement(place));
         }
         let mut bodies = values.into_iter().filter_map(|value| match bare_body(&value) {
-            Some(body) => Some(builder.body(body)),
+            Some(body) => Some(builder.block(body)),
             None => {
                 value::expression(builder, value);
                 None
@@ -185,7 +185,7 @@ fn otherwise<'t>(builder: &Builder<'t>, pair: Node<'t>) -> Deep<Body> {
         return chained(builder, kind, depth, span);
     }
     match parts.next() {
-        Some(pair) if pair.as_rule() == Rule::body => builder.body(pair),
+        Some(pair) if pair.as_rule() == Rule::body => builder.block(pair),
         Some(pair) => {
             let span = builder.trimmed(&pair);
             let mut parts = pair.into_inner();

@@ -63,6 +63,8 @@ pub(super) struct Builder<'t> {
     pub(super) declares: Cell<bool>,
     /// Whether it is in a group, outside of the things in it.
     pub(super) grouped: Cell<bool>,
+    /// Whether no field can stand where it is: at the top level, also in what repeats or chooses there.
+    top: Cell<bool>,
     /// What was to be fields of the body that is being read, and stands in parentheses that were never closed.
     swallowed: RefCell<Vec<Name>>,
 }
@@ -80,6 +82,7 @@ impl<'t> Builder<'t> {
             unbraced: Cell::new(false),
             declares: Cell::new(true),
             grouped: Cell::new(false),
+            top: Cell::new(true),
             swallowed: RefCell::default(),
         }
     }
@@ -207,6 +210,7 @@ impl<'t> Builder<'t> {
 
     /// Entries, and the slips with which some of them end.
     pub(super) fn entries(&self, pairs: Pairs<'t, Rule>, top: bool) -> Deep<Vec<Entry>> {
+        let around = self.top.replace(top);
         let (mut entries, mut deepest) = (vec![], 0);
         // Whether a complaint about the last entry, or about its value, explains what follows on its line.
         let (mut explained, mut explained_value) = (false, false);
@@ -287,6 +291,7 @@ impl<'t> Builder<'t> {
                 }
             }
         }
+        self.top.set(around);
         (entries, deepest)
     }
 
@@ -326,6 +331,13 @@ impl<'t> Builder<'t> {
     pub(super) fn body(&self, pair: Node<'t>) -> Deep<Body> {
         let span = self.span(&pair);
         let (entries, depth) = self.entries(pair.into_inner(), false);
+        (Body { entries, span }, depth + 1)
+    }
+
+    /// `{ … }` of what repeats or chooses: in it stands what stands around it.
+    pub(super) fn block(&self, pair: Node<'t>) -> Deep<Body> {
+        let span = self.span(&pair);
+        let (entries, depth) = self.entries(pair.into_inner(), self.top.get());
         (Body { entries, span }, depth + 1)
     }
 

@@ -299,7 +299,10 @@ impl<'t> Builder<'t> {
         } else if is_word(value.as_str().trim_end())
             && !self.after(value.as_span().end()).trim_ascii_start().starts_with(':')
         {
-            self.report(errors::missing_body(self.before(value.as_span().end()), value_span));
+            self.report(errors::missing_body(
+                &self.before(value.as_span().end())[span.range().start - self.base()..],
+                value_span,
+            ));
         } else {
             self.report(errors::no_brace(&name.text, name.span, value_span));
         }

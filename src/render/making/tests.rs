@@ -136,6 +136,13 @@ fn samples_that_were_to_be_so_many_are_judged_as_they_are() {
     even(&mut done, &limits(0.5));
     assert_eq!((done.go_on(&limits(0.5), SHOWN), done.judged()), (Some(Limit::Noise), None));
     assert_eq!(done.samples(), [100; 2]);
+    // However many there were to be, also where all have as many, and where pixels are judged anyway.
+    for least in [16, 100] {
+        let limits = Limits { least, ..limits(0.5) };
+        let mut kept = Making::resumed(done.film.clone(), 0, &aims, None).unwrap();
+        kept.blocks.iter_mut().for_each(|block| block.samples = 100);
+        assert_eq!(kept.go_on(&limits, SHOWN), Some(Limit::Noise));
+    }
     // It goes on to the other as any picture, also if it is put aside on the way.
     let mut open = making;
     even(&mut open, &limits(1e-4));
