@@ -6,18 +6,25 @@ use super::denoise::Clear;
 use super::interrupt::Interrupt;
 use super::target::Staged;
 use super::terminal::Terminal;
-use super::{Exit, Problem, build, input};
-use rt_lang::output::{Channels, MOST_PIXELS, decode_denoised, decode_exr};
+use super::{Exit, Problem, build, input, keep};
+use rt_lang::output::{Channels, MOST_PIXELS, decode_denoised, decode_exr, is_exr};
+use rt_lang::saved::Head;
 
 /// The largest EXR that is read: the most pixels, uncompressed, with a channel to spare.
-const LARGEST: u64 = MOST_PIXELS * 16;
+pub const LARGEST: u64 = MOST_PIXELS * 16;
 
 /// Develops one picture into all its outputs.
 pub fn run(arguments: &Develop, terminal: Terminal, interrupt: &Interrupt) -> Result<Exit, Problem> {
     let targets = build::targets(&arguments.outputs)?;
     build::refuse_inputs_as_outputs(std::slice::from_ref(&arguments.input), &build::paths(&targets))?;
     build::refuse_idle_depth(arguments.look.bits, &targets)?;
-    let bytes = input::read_bytes(&arguments.input, LARGEST)?;
+    // What is no EXR is told by its beginning; samples that are kept take more than a picture.
+    let judge = |start: &[u8]| match Head::decode(start) {
+        Ok(head) => Ok(head.most_bytes().max(LARGEST)),
+        Err(_) if is_exr(start) => Ok(LARGEST),
+        Err(_) => Err(start.to_vec()),
+    };
+    let bytes = input::read_judged(&arguments.input, false, keep::HEAD, judge)?.unwrap_or_else(|start| start);
     let decoded = decode_exr(&bytes).and_then(|(picture, facts)| {
         let denoised = if arguments.noisy { None } else { decode_denoised(&bytes)? };
         Ok((picture, denoised, facts))

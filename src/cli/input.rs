@@ -55,6 +55,30 @@ pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, Problem> {
     }
 }
 
+/// Reads the bytes of a file, or of standard input or a pipe where it need not be `plain`, of which the first, so many, are judged
+/// before more are read: by `judge`, why there is no use in that, or how many there may be.
+pub fn read_judged<E>(
+    path: &Path,
+    plain: bool,
+    first: u64,
+    judge: impl FnOnce(&[u8]) -> Result<u64, E>,
+) -> Result<Result<Vec<u8>, E>, Problem> {
+    let cannot = |error| cannot_read(path, &error);
+    let mut from: Box<dyn Read> = match (plain, is_standard(path)) {
+        (true, _) => Box::new(open_plain(path).map_err(cannot)?),
+        (false, true) => Box::new(stdin().lock()),
+        (false, false) => Box::new(File::open(path).map_err(cannot)?),
+    };
+    let mut bytes = limited(&mut from, first - 1).map_err(cannot)?;
+    let most = match judge(&bytes) {
+        Ok(most) => most,
+        Err(why) => return Ok(Err(why)),
+    };
+    let rest = most.saturating_sub(bytes.len() as u64);
+    bytes.extend(all(path, Ok(from), rest)?);
+    Ok(Ok(bytes))
+}
+
 /// Reads the bytes of a file that `rtc` has written.
 pub fn read_plain(path: &Path, most: u64) -> Result<Vec<u8>, Problem> {
     all(path, open_plain(path), most)

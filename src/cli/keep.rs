@@ -5,18 +5,15 @@ use super::build::Context;
 use super::interrupt::Interrupt;
 use super::target::{Aside, Target};
 use super::{Problem, build, input, plain};
-use rt_lang::output::{Facts, MOST_PIXELS, is_exr};
+use rt_lang::output::{Facts, is_exr};
 use rt_lang::render::making::Making;
-use rt_lang::saved::{self, CHANNELS, EARLY_CHANNELS, Head, Saved, Subject};
+use rt_lang::saved::{self, Head, Refused, Saved, Subject};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// The largest file of samples that is read: the most pixels, uncompressed, and a little more.
-pub const LARGEST: u64 = MOST_PIXELS * 4 * ((CHANNELS.len() + EARLY_CHANNELS.len()) as u64 + 5);
-
 /// The bytes of a file that are looked at for what it is of: the head of one is far smaller.
-const HEAD: u64 = 1 << 18;
+pub const HEAD: u64 = 1 << 18;
 
 /// What messages call the samples that are there, where they are of another picture.
 pub const CALLED: &str = "kept";
@@ -153,6 +150,14 @@ pub struct Account {
     lacks: bool,
 }
 
+/// Reads a file of samples, or says why it is none. No more of it is read than its head promises. Only one that is `plain` may
+/// not be a pipe or standard input.
+pub fn load(path: &Path, plain: bool) -> Result<Result<Saved, Refused>, Problem> {
+    let bytes =
+        input::read_judged(path, plain, HEAD, |start| Head::decode(start).map(|head| head.most_bytes()))?;
+    Ok(bytes.and_then(|bytes| Saved::decode(&bytes)))
+}
+
 /// What a file of samples says that it is of; none where it is no such file.
 pub fn head(path: &Path) -> Option<Head> {
     Head::decode(&start(path).ok()?).ok()
@@ -274,11 +279,10 @@ impl<'a> Keeper<'a> {
         if !must_be && !input::is_there(path)? {
             return Ok(None);
         }
-        let bytes = input::read_plain(path, LARGEST)?;
+        let saved = load(path, true)?;
         let cannot = |why: String, help: &str| {
             Problem::new(format!("cannot go on from `{}`: {why}", path.display())).help(help)
         };
-        let saved = Saved::decode(&bytes);
         if let (Err(why), true) = (&saved, self.places.yields) {
             self.say_begun_anew(path, &format!("it {why}"));
             return Ok(None);
@@ -303,6 +307,7 @@ impl<'a> Keeper<'a> {
                  picture of those that are there",
             )),
             None => {
+                self.refuse_loss(path, &saved.making)?;
                 self.last.1 = saved.making.mean_samples();
                 let from = Amount::of(&saved.making, path);
                 if build::same(path) == build::same(&self.places.to) {
@@ -312,6 +317,25 @@ impl<'a> Keeper<'a> {
                 Ok(Some(saved.making))
             }
         }
+    }
+
+    /// Refuses to replace samples that are kept under the one name by others that are gone on with from the other, unless these
+    /// are more of the same.
+    fn refuse_loss(&self, from: &Path, making: &Making) -> Result<(), Problem> {
+        let to = &self.places.to;
+        let Some(head) = head(to).filter(|_| build::same(from) != build::same(to)) else { return Ok(()) };
+        let has_more = |kept: [u32; 2]| kept.iter().zip(making.samples()).any(|(kept, own)| *kept > own);
+        let why = match self.subject.refuses(&head.subject, CALLED) {
+            Some(why) => why,
+            None if head.facts.samples.is_some_and(has_more) => {
+                format!("it has more samples than `{}`", from.display())
+            }
+            None => return Ok(()),
+        };
+        let to = to.display();
+        Err(Problem::new(format!("`{to}` would be replaced by the checkpoint: {why}")).help(format!(
+            "`--resume={to}` goes on from it, `--checkpoint=FILE` keeps the samples elsewhere"
+        )))
     }
 
     fn say_begun_anew(&self, path: &Path, why: &str) {

@@ -2,13 +2,12 @@
 
 use super::args::Merge;
 use super::interrupt::Interrupt;
-use super::keep::LARGEST;
 use super::target::Staged;
 use super::terminal::Terminal;
-use super::{Exit, Problem, build, input, keep};
+use super::{Exit, Problem, build, keep};
 use rt_lang::output::{Channels, Facts};
 use rt_lang::render::halt::Limit;
-use rt_lang::saved::{self, Head, Merging, Saved};
+use rt_lang::saved::{self, Head, Merging};
 use std::path::{Path, PathBuf};
 
 /// The attribute of an EXR that tells which part of the picture's samples it has, where some are missing.
@@ -89,9 +88,8 @@ fn in_order(arguments: &Merge) -> Result<Vec<&Path>, Problem> {
 /// Adds the share of a file to those before it, or begins with it.
 fn add(merging: Option<&mut Merging>, path: &Path) -> Result<Option<Merging>, Problem> {
     let name = path.display().to_string();
-    let bytes = input::read_bytes(path, LARGEST)?;
     let cannot = |why: saved::Refused| Problem::new(format!("`{name}` {why}"));
-    let saved = Saved::decode(&bytes).map_err(|why| {
+    let saved = keep::load(path, false)?.map_err(|why| {
         cannot(why).help(
             "a share is an EXR that `rtc build --shard I/N` wrote: make it again, or have `--partial` leave it out",
         )

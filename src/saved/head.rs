@@ -32,6 +32,15 @@ impl Head {
         of_sums(file).map(drop)
     }
 
+    /// More bytes than a file with this head has, whose numbers take as much as they can.
+    pub fn most_bytes(&self) -> u64 {
+        // What stands beside them is at most the picture's own channels, and where its lines begin.
+        const BESIDE: usize = 6;
+        const TEXTS: usize = 1 << 20;
+        let values = CHANNELS.len() + EARLY_CHANNELS.len() + BESIDE;
+        (TEXTS + self.window.pixels() * size_of::<f32>() * values) as u64
+    }
+
     /// Reads the head of a file, for which its first bytes do.
     pub fn decode(file: &[u8]) -> Result<Head, Refused> {
         let (head, form) = of_sums(file)?;

@@ -130,7 +130,14 @@ fn a_hostile_file_is_refused_by_its_name_within_little_memory() {
         desk.put("all", data(&all, 10_000));
         let display = with_attribute(&desk.get(kept), "displayWindow\0box2i\0", &window(32_768));
         desk.put("billion", data(&display, 32_768));
-        for (hostile, said) in [("all", "cannot hold"), ("billion", "1073741824 pixels")] {
+        // More bytes than memory, of which nothing is told.
+        fs::File::create(desk.path("empty")).and_then(|file| file.set_len(8 << 30)).unwrap();
+        let hostiles = [
+            ("all", "cannot hold"),
+            ("billion", "1073741824 pixels"),
+            ("empty", "is no checkpoint and no share"),
+        ];
+        for (hostile, said) in hostiles {
             let merge = format!("merge part1.exr {hostile} -o no.exr");
             let resume = format!(
                 "{} --crop 0,0,10000,10000 --resume={hostile} -o no.exr",
@@ -361,7 +368,20 @@ fn what_is_kept_and_gone_on_from_is_told() {
     let elsewhere = build("--samples 9 --resume=a.png.checkpoint --checkpoint=kept");
     assert_eq!(told(elsewhere), "went on from 9 samples in `a.png.checkpoint`, kept 9 samples in `kept`");
     assert_same(&desk.path("a.png.checkpoint"), &desk.path("kept"));
-    assert!(build("--samples 9 --resume --quiet").stderr.is_empty());
+    // What is kept under another name is not lost to less, or to another picture.
+    build("--samples 20 --checkpoint=more").expect(0, &[]);
+    build("--samples 4 --seed 2 --checkpoint=other").expect(0, &[]);
+    let (more, other) = (desk.get("more"), desk.get("other"));
+    let onto = |to: &str| build(&format!("--samples 16 --resume=kept --checkpoint={to}"));
+    onto("more").expect(
+        2,
+        &["`more` would be replaced by the checkpoint: it has more samples than `kept`", "--resume=more"],
+    );
+    onto("other")
+        .expect(2, &["`other` would be replaced by the checkpoint: it is of another picture", "--seed"]);
+    assert!(desk.get("more") == more && desk.get("other") == other);
+    build("--samples 25 --resume=more --checkpoint=kept").expect(0, &["went on from 20 samples in `more`"]);
+    assert!(build("--samples 9 --resume=a.png.checkpoint --quiet").stderr.is_empty());
     assert!(!build("--samples 9").stderr.contains("kept"));
 }
 

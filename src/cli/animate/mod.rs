@@ -27,7 +27,7 @@ use super::progress::duration;
 use super::target::{Target, patiently};
 use super::terminal::Terminal;
 use super::trace::{Before, Plan, Traced, trace};
-use super::{Exit, Problem, input, keep, scene as scenes};
+use super::{Exit, Problem, develop, input, keep, scene as scenes};
 use mark::Found;
 pub use names::has_number;
 use orders::Orders;
@@ -317,7 +317,7 @@ impl Studio<'_, '_> {
 fn read(targets: &[Target]) -> Result<(Picture, Facts), Problem> {
     let exr = targets.iter().find(|target| target.format == Format::Exr);
     let exr = exr.ok_or_else(|| Problem::new("no EXR holds the frame"))?;
-    let bytes = input::read_plain(&exr.path, keep::LARGEST)?;
+    let bytes = input::read_plain(&exr.path, develop::LARGEST)?;
     decode_shown(&bytes)
         .map_err(|reason| Problem::new(format!("`{}` cannot be read: {reason}", exr.path.display())))
 }
