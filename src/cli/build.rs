@@ -10,7 +10,7 @@ use super::progress::duration;
 use super::target::{Staged, Target, patiently};
 use super::terminal::Terminal;
 use super::trace::{Plan, Traced, take, trace};
-use super::{Exit, Problem, keep, scene as scenes, shard};
+use super::{Exit, Problem, claim, keep, scene as scenes, shard};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use rt_lang::aov::Aov;
 use rt_lang::diagnostic::Diagnostic;
@@ -175,6 +175,13 @@ pub fn paths(targets: &[Target]) -> Vec<PathBuf> {
 
 /// Nobody means to replace a scene, or what it is made of, by its picture.
 pub fn refuse_inputs_as_outputs(inputs: &[PathBuf], outputs: &[PathBuf]) -> Result<(), Problem> {
+    if let Some(input) = inputs.iter().find(|input| claim::is_ours(input)) {
+        let problem =
+            Problem::new(format!("`{}` has the name of a file that rtc is writing", input.display()));
+        return Err(problem.help(
+            "a scene is read from files of other names: it would be removed as what is left of such a file",
+        ));
+    }
     let Some(output) = first_replaced(inputs, outputs) else { return Ok(()) };
     let problem = Problem::new(format!("`{}` would be replaced by the picture", output.display()));
     Err(problem.help("name another output with `-o`"))

@@ -40,6 +40,12 @@ pub fn path(folder: &Path, name: &str) -> PathBuf {
     folder.join(format!("{PREFIX}{name}{SUFFIX}"))
 }
 
+/// Whether a file has such a name.
+pub fn is_ours(path: &Path) -> bool {
+    let name = path.file_name().and_then(|name| name.to_str());
+    name.is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX))
+}
+
 /// Makes a file in a folder for what is to be called so, also while others have one for the same, and in nobody's way. Its owner
 /// may write it, and besides it has these permissions, or those that the umask leaves. It is the first of `.rtc-NAME.1.tmp` and
 /// so on that can be had, or else has a name that no other has.

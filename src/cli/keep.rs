@@ -12,6 +12,9 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+/// What the name of a checkpoint has behind that of its picture.
+pub const SUFFIX: &str = ".checkpoint";
+
 /// The bytes of a file that are looked at for what it is of: the head of one is far smaller.
 pub const HEAD: u64 = 1 << 18;
 
@@ -137,7 +140,7 @@ pub fn beside(targets: &[Target]) -> Result<PathBuf, Problem> {
         return Err(problem.help("name a file: `--checkpoint=FILE`"));
     };
     let mut name = file.path.clone().into_os_string();
-    name.push(".checkpoint");
+    name.push(SUFFIX);
     Ok(name.into())
 }
 

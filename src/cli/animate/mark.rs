@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// The largest record that is read.
 const LARGEST: u64 = 1 << 16;
 /// How names of records end.
-const SUFFIX: &str = ".made";
+pub const SUFFIX: &str = ".made";
 /// How many differences are named.
 const MOST_NAMED: usize = 3;
 

@@ -121,7 +121,7 @@ impl Studio<'_, '_> {
     fn shoot(&mut self) -> Result<Option<Vec<String>>, Problem> {
         let orders = self.orders;
         let Some(first) = self.compile(1)? else { return Ok(None) };
-        orders.refuse_inputs(&self.disk.read_paths())?;
+        orders.refuse_inputs(&self.disk.read_paths(), self.series.sources())?;
         let Some(scene) = &first.scene else { return Ok(None) };
         if let Some(vantage) = first.vantage {
             self.series.hold(vantage);
@@ -129,8 +129,11 @@ impl Studio<'_, '_> {
         }
         self.choose_exposure(scene);
         // Better now than after a night.
-        if orders.of > 1 && self.compile(orders.of)?.is_none() {
-            return Ok(None);
+        if orders.of > 1 {
+            if self.compile(orders.of)?.is_none() {
+                return Ok(None);
+            }
+            orders.refuse_inputs(&self.disk.read_paths(), self.series.sources())?;
         }
         let wait = self.context.arguments.keeping.wait.unwrap_or_default();
         let mut films = patiently(wait, self.context, || self.open(scene))?;
@@ -262,7 +265,9 @@ impl Studio<'_, '_> {
                 }
             }
         }
-        plan.refuse_replacing(&self.disk.read_paths())?;
+        let read = self.disk.read_paths();
+        build::refuse_inputs_as_outputs(&read, &build::paths(&targets))?;
+        plan.refuse_replacing(&read)?;
         let staged = build::stage(self.context, &targets, scene, window)?;
         let name = format!("{} {number}/{}", self.orders.scene.display(), self.orders.of);
         let traced =

@@ -183,6 +183,16 @@ impl Pattern {
         }
     }
 
+    /// Where a frame is kept that goes into a film, in the folder for that.
+    pub fn kept(folder: &Path) -> Option<Pattern> {
+        Some(Pattern { before: format!("{}/", folder.to_str()?), width: 6, after: ".exr".into() })
+    }
+
+    /// The same with something behind the name.
+    pub fn with(self, suffix: &str) -> Pattern {
+        Pattern { after: self.after + suffix, ..self }
+    }
+
     /// The file of a frame.
     pub fn path(&self, number: u32) -> PathBuf {
         let Pattern { before, width, after } = self;

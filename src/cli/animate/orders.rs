@@ -8,10 +8,12 @@ use super::super::messages::on_standard_output;
 use super::super::target::Target;
 use super::super::{Problem, plain};
 use super::names::{Form, Output, Pattern, place};
-use super::only;
+use super::{mark, only};
 use rt_lang::output::animation::{Motion, Rate};
 use rt_lang::output::{Depth, Format};
+use rt_lang::source::{Source, Sources};
 use std::collections::BTreeSet;
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -69,16 +71,33 @@ impl Orders {
         Ok(orders)
     }
 
-    /// Refuses to replace what the film is made of. Only a file that is there can be one of these, and is it by its name unless it
-    /// is a link; so a film of a million frames is seen through at once.
-    pub fn refuse_inputs(&self, inputs: &[PathBuf]) -> Result<(), Problem> {
+    /// Refuses to replace what the film is made of, by its frames, or by what is kept of them: what was read, and what a text of
+    /// the sources names, which another frame may read. Only a file that is there can be one of these, and is it by its name
+    /// unless it is a link; so a film of a million frames is seen through at once.
+    pub fn refuse_inputs(&self, read: &[PathBuf], sources: &Sources) -> Result<(), Problem> {
+        let of_frames: Vec<(PathBuf, bool)> =
+            self.written().iter().flat_map(|pattern| pattern.there(&self.numbers)).collect();
+        let films: Vec<PathBuf> = self.film_paths().collect();
+        let paths = || of_frames.iter().map(|(path, _)| path).chain(&films);
+        let written: BTreeSet<&OsStr> = paths().filter_map(|path| path.file_name()).collect();
+        let texts = sources.iter().flat_map(|(_, source)| texts(source));
+        let named = texts.filter(|path| path.file_name().is_some_and(|name| written.contains(name)));
+        let inputs: Vec<PathBuf> = read.iter().cloned().chain(named).collect();
         let names: BTreeSet<_> =
             inputs.iter().filter_map(|input| Some(build::same(input).file_name()?.to_owned())).collect();
-        let there = self.each.iter().flat_map(|pattern| pattern.there(&self.numbers));
-        let pictures =
-            there.filter(|(path, link)| *link || path.file_name().is_some_and(|name| names.contains(name)));
-        let paths: Vec<PathBuf> = self.film_paths().chain(pictures.map(|(path, _)| path)).collect();
-        build::refuse_inputs_as_outputs(inputs, &paths)
+        let is_near = |(path, link): &&(PathBuf, bool)| {
+            *link || path.file_name().is_some_and(|name| names.contains(name))
+        };
+        let near = of_frames.iter().filter(is_near).map(|(path, _)| path.clone());
+        build::refuse_inputs_as_outputs(&inputs, &films.iter().cloned().chain(near).collect::<Vec<_>>())
+    }
+
+    /// The names of all that is written of frames: pictures, and where they are kept, their records and checkpoints.
+    fn written(&self) -> Vec<Pattern> {
+        let kept = self.kept.iter().filter_map(|folder| Pattern::kept(folder));
+        let pictures: Vec<Pattern> = self.each.iter().cloned().chain(kept).collect();
+        let beside = ["", mark::SUFFIX, keep::SUFFIX];
+        pictures.iter().flat_map(|picture| beside.map(|suffix| picture.clone().with(suffix))).collect()
     }
 
     fn film_paths(&self) -> impl Iterator<Item = PathBuf> {
@@ -150,7 +169,7 @@ impl Orders {
         if let Some(twice) = self.twice() {
             return Err(Problem::new(format!("the output `{}` is given twice", twice.display())));
         }
-        self.refuse_inputs(&arguments.scenes)?;
+        self.refuse_inputs(&arguments.scenes, &Sources::default())?;
         build::refuse_idle_aovs(&arguments.aov, &first)?;
         let png = |(_, form): &(PathBuf, Form)| *form == Form::Own(Motion::Apng);
         let depth = if self.films.iter().any(png) { Depth::Eight } else { arguments.taking.look.bits };
@@ -204,4 +223,11 @@ fn refuse_what_films_cannot(arguments: &Build) -> Result<(), Problem> {
         Build { keeping: Keeping { resume: Some(Resume::From(file)), .. }, .. } => Err(named(file)),
         _ => Ok(()),
     }
+}
+
+/// The files that texts of a source may name, as a person would write them.
+fn texts(source: &Source) -> impl Iterator<Item = PathBuf> {
+    let folder = Path::new(&source.name).parent().unwrap_or(Path::new(""));
+    let code = source.text.lines().map(|line| line.split("//").next().unwrap_or(""));
+    code.flat_map(|code| code.split('"').skip(1).step_by(2)).map(|text| folder.join(text))
 }
