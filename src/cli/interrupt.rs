@@ -32,6 +32,8 @@ pub struct Interrupt {
     asked: Arc<AtomicBool>,
     /// Whether the work under way ends the process when it was asked to.
     keeps: Arc<AtomicBool>,
+    /// What was kept of the picture at work, in words.
+    said: Arc<Mutex<Option<String>>>,
     /// Whether it was asked to keep what there is, and not to end.
     requested: Arc<AtomicBool>,
 }
@@ -72,12 +74,14 @@ impl Interrupt {
     /// From here on who is asked to end leaves that to the work under way, which keeps what there is and then calls
     /// [`Interrupt::kept`]. Asked twice, the process ends at once.
     pub fn keep(&self) {
+        *lock(&self.said) = None;
         self.keeps.store(true, SeqCst);
     }
 
     /// Ends the process if that was asked for, and says what was kept.
     pub fn kept(&self, terminal: Terminal, said: Option<String>) {
         self.keeps.store(false, SeqCst);
+        *lock(&self.said) = said.clone();
         // Asked before, nobody else does it.
         if self.asked.load(SeqCst) {
             self.leave(terminal, said)
@@ -172,6 +176,8 @@ impl Interrupt {
             // Past the progress bar.
             terminal.line("");
         }
+        // What was kept before stays kept, whatever was at work since.
+        let said = said.or_else(|| held_soon(&self.said).and_then(|said| said.clone()));
         let kept = said.map_or(String::new(), |said| format!("; {said}"));
         terminal.line(&format!("interrupted{kept}"));
         std::process::exit(Exit::Interrupted as i32);

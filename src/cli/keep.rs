@@ -6,8 +6,9 @@ use super::interrupt::Interrupt;
 use super::target::{Aside, Target};
 use super::{Problem, build, input, plain};
 use rt_lang::output::{Facts, is_exr};
+use rt_lang::render::Shown;
 use rt_lang::render::making::Making;
-use rt_lang::saved::{self, Head, Refused, Saved, Subject};
+use rt_lang::saved::{self, Head, Refused, Saved, Share, Subject};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -249,6 +250,8 @@ pub struct Keeper<'a> {
     account: Account,
     /// Whether it was said that they cannot be kept.
     complained: bool,
+    /// How the picture that is kept was when a noise target last decided where its samples go.
+    judged: Option<Shown>,
 }
 
 impl<'a> Keeper<'a> {
@@ -260,23 +263,30 @@ impl<'a> Keeper<'a> {
     ) -> Keeper<'a> {
         let (every, last) = (context.arguments.keeping.every(), (Instant::now(), 0.0));
         let (held, cost, account, complained) = (None, Duration::ZERO, Account::default(), false);
-        Keeper { places, every, subject, facts, context, held, last, cost, account, complained }
+        let judged = None;
+        Keeper { places, every, subject, facts, context, held, last, cost, account, complained, judged }
     }
 
-    /// The picture to go on with; none where there is nothing to go on from. What differs is an error, in what `refuses` says
-    /// too; and so is a file that is damaged, for nobody should lose work by going on without it, though a frame of a film is begun
-    /// anew; and a place where nothing can be kept.
-    pub fn resume(
-        &mut self,
-        refuses: impl FnOnce(&Making) -> Option<String>,
-    ) -> Result<Option<Making>, Problem> {
+    /// Keeps others from where the samples are kept, which must be a place where they can be.
+    pub fn hold(&mut self) -> Result<(), Problem> {
         if let Some((path, true)) = &self.places.from {
             input::open_plain(path).map_err(|error| input::cannot_read(path, &error))?;
         }
         self.held = Some(Aside::hold(&self.places.to, self.context.interrupt)?);
         drop(Aside::always_beside(&self.places.to, self.context.interrupt)?);
+        Ok(())
+    }
+
+    /// The picture to go on with; none where there is nothing to go on from. What differs is an error, in what `refuses` says
+    /// too; and so is a file that is damaged, for nobody should lose work by going on without it, though a frame of a film is begun
+    /// anew. To be called where [`Keeper::hold`] was.
+    pub fn resume(
+        &mut self,
+        refuses: impl FnOnce(&Making) -> Option<String>,
+    ) -> Result<Option<Making>, Problem> {
         if !matches!(&self.places.from, Some((path, true)) if *path == self.places.to) {
             self.places.refuse_foreign()?;
+            self.refuse_share()?;
         }
         let Some((path, must_be)) = &self.places.from else { return Ok(None) };
         if !must_be && !input::is_there(path)? {
@@ -294,32 +304,49 @@ impl<'a> Keeper<'a> {
             let help = match must_be {
                 true => "name a file that `--checkpoint` wrote, or begin afresh with `--resume=never`",
                 false => {
-                    "`--resume=never` begins afresh and replaces it, `--checkpoint=FILE` keeps the samples elsewhere"
+                    "`--checkpoint=FILE` keeps the samples elsewhere, and `--resume=never` begins afresh and replaces it"
                 }
             };
             cannot(format!("it {why}"), help)
         })?;
-        match self.subject.refuses(&saved.subject, CALLED).or_else(|| refuses(&saved.making)) {
+        const ELSEWHERE: &str = "`--checkpoint=FILE` keeps the samples elsewhere, `rtc develop` makes a picture of those that are \
+                                 there, and `--resume=never` begins afresh and replaces them";
+        match self.subject.refuses(&saved.subject, CALLED) {
             Some(why) if self.places.yields => {
                 self.say_begun_anew(path, &why);
-                Ok(None)
+                return Ok(None);
             }
-            Some(why) => Err(cannot(
-                why,
-                "`--resume=never` begins afresh, `--checkpoint=FILE` keeps the samples elsewhere, and `rtc develop` makes a \
-                 picture of those that are there",
-            )),
+            Some(why) => return Err(cannot(why, ELSEWHERE)),
+            None => {}
+        }
+        // What is there of the very picture is not thrown away for a limit or a look that was mistaken, in a film either.
+        match refuses(&saved.making) {
+            Some(why) => Err(cannot(why, ELSEWHERE)),
             None => {
                 self.refuse_loss(path, &saved.making)?;
                 self.last.1 = saved.making.mean_samples();
                 let from = Amount::of(&saved.making, path);
                 if build::same(path) == build::same(&self.places.to) {
                     self.account.to = Some(from.clone());
+                    self.judged = saved.making.judged();
                 }
                 self.account.from = Some(from);
                 Ok(Some(saved.making))
             }
         }
+    }
+
+    /// Refuses to replace a share by what is none, or by another one.
+    fn refuse_share(&self) -> Result<(), Problem> {
+        let to = &self.places.to;
+        let share =
+            head(to).and_then(|head| head.subject.share).filter(|share| Some(*share) != self.subject.share);
+        let Some(Share { index, of, samples }) = share else { return Ok(()) };
+        let to = to.display();
+        Err(Problem::new(format!(
+            "`{to}` would be replaced by the checkpoint, and holds share {index}/{of} of {samples} samples"
+        ))
+        .help("remove it, or name another file: `--checkpoint=FILE`"))
     }
 
     /// Refuses to replace samples that are kept under the one name by others that are gone on with from the other, unless these
@@ -362,7 +389,10 @@ impl<'a> Keeper<'a> {
         self.last = (Instant::now(), making.mean_samples());
         self.account.lacks = kept.is_err();
         match kept {
-            Ok(()) => self.account.to = Some(Amount::of(making, &self.places.to)),
+            Ok(()) => {
+                self.account.to = Some(Amount::of(making, &self.places.to));
+                self.judged = making.judged();
+            }
             Err(problem) if !self.complained => {
                 let problem = problem.help("the samples are not kept; the picture goes on");
                 self.context.terminal.warning(&problem);
@@ -372,10 +402,11 @@ impl<'a> Keeper<'a> {
         }
     }
 
-    /// Keeps the samples when no more come for now, unless there are none, or they are kept already.
+    /// Keeps the samples when no more come for now, unless there are none, or they are kept already, with what was decided last:
+    /// what is kept then depends on nothing else.
     pub fn finish(&mut self, making: &Making) {
         let kept = self.account.to.as_ref().map_or(0.0, |to| to.mean);
-        if making.mean_samples() > kept {
+        if making.mean_samples() > kept || kept > 0.0 && self.judged != making.judged() {
             self.keep(making);
         }
     }

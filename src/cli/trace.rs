@@ -7,7 +7,7 @@ use super::denoise::{self, Clear, Denoised};
 use super::keep::{self, Account, Keeper, Places};
 use super::progress::{Progress, Work};
 use super::shard;
-use super::target::Target;
+use super::target::{Target, patiently};
 use rt_lang::aov::{self, Aov};
 use rt_lang::denoise::METHOD;
 use rt_lang::output::{Channels, Facts, Picture};
@@ -213,10 +213,15 @@ pub fn trace(
     let aovs = &context.arguments.aov;
     let mut keeper = places.map(|places| Keeper::new(places, (&tracing.subject, &tracing.facts), context));
     let kept = match &mut keeper {
-        Some(keeper) => keeper.resume(|kept| {
-            let lacks_halves = || denoises.then(|| denoise::refuses(kept)).flatten();
-            tracing.refuses(kept).or_else(lacks_halves)
-        })?,
+        Some(keeper) => {
+            // Of a film, others are waited for a frame at a time.
+            let wait = context.arguments.keeping.wait.filter(|_| before.is_none()).unwrap_or_default();
+            patiently(wait, context, || keeper.hold())?;
+            keeper.resume(|kept| {
+                let lacks_halves = || denoises.then(|| denoise::refuses(kept)).flatten();
+                tracing.refuses(kept).or_else(lacks_halves)
+            })?
+        }
         None => None,
     };
     let reused = before.as_mut().and_then(|before| before.samples(&tracing, window));
@@ -313,13 +318,15 @@ impl<'a> Tracing<'a> {
             return Some(format!("its sums are of another scale ({other:e}, not {own:e})"));
         }
         let ([_, most], limits) = (kept.samples(), &self.limits);
-        if limits.noise.is_none() && most > limits.samples {
+        if most > limits.samples {
             return Some(format!(
-                "it has up to {most} samples a pixel already, and no more than {} are asked for",
+                "it has up to {most} samples a pixel already, and no more than {} are asked for: `--samples {most}` goes on",
                 limits.samples
             ));
         }
-        let judged = kept.judged().filter(|judged| self.limits.noise.is_some() && *judged != self.shown)?;
+        // Where all pixels have as many, nothing was chosen.
+        let judged = kept.judged().filter(|_| limits.noise.is_some() && !kept.is_even());
+        let judged = judged.filter(|judged| *judged != self.shown)?;
         let (own, other) = match judged.stops == self.shown.stops {
             false => (format!("`--exposure {}`", self.shown.stops), judged.stops.to_string()),
             true => (format!("`--tonemap {}`", self.shown.tonemap.word()), judged.tonemap.word().to_string()),

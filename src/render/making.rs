@@ -148,6 +148,11 @@ impl Making {
         [samples().min().unwrap_or(0), samples().max().unwrap_or(0)]
     }
 
+    /// Whether all pixels have as many samples, and are to have as many.
+    pub fn is_even(&self) -> bool {
+        self.blocks.windows(2).all(|pair| (pair[0].samples, pair[0].aim) == (pair[1].samples, pair[1].aim))
+    }
+
     /// The mean number of samples of a pixel.
     pub fn mean_samples(&self) -> f64 {
         self.paths_done() as f64 / self.film.window().pixels().max(1) as f64

@@ -278,8 +278,11 @@ impl Studio<'_, '_> {
             if let Err(problem) = mark::record(&subject, &targets, interrupt) {
                 terminal.warning(&problem.help("the frame is made; asked for again, it is made anew"));
             }
-            // What is done needs no samples any more.
-            let _ = fs::remove_file(keep::beside(&targets)?);
+            // What is done needs no samples any more; what is no checkpoint is nobody's to remove.
+            let kept = keep::beside(&targets)?;
+            if keep::head(&kept).is_some() {
+                let _ = fs::remove_file(kept);
+            }
         }
         let findings = self.findings(&compiled, scene, &traced);
         self.say(&findings)?;
