@@ -188,3 +188,44 @@ fn a_camera_inside_a_wall_is_a_warning() {
     desk.quick("inside.rt").expect(0, &["W0601", "[inside.rt:1:"]);
     assert_eq!(desk.quick("inside.rt --quiet").stderr, "");
 }
+
+#[test]
+fn a_film_never_replaces_what_one_of_its_frames_reads() {
+    let desk = Desk::new();
+    let ball = "param t: number = 0\ncamera { from: (0, 0, 4)m, look: (0, 0, 0)m }\nsphere { radius: 1m + t * 1m }\n";
+    desk.put("plain.rt", ball);
+    let film = |scene: &str, rest: &str| {
+        let mut command = desk.command(&format!("build {scene} --size 8x6 --samples 2 --frames 3 {rest}"));
+        super::ended(command.args(["--sweep", "t = 0 to 1"]).output().unwrap())
+    };
+    film("plain.rt", "-o f.{}.png --resume").expect(0, &[]);
+    film("plain.rt", "-o w.webp --resume").expect(0, &[]);
+    // Read by a frame in the middle alone, of what is kept, and as a source.
+    let middle = |file: &str| {
+        let ground =
+            format!("plane {{ at: (0, 0, -3)m, material: diffuse {{ color: image(\"{file}\", 1m) }} }}");
+        format!("{ball}if t > 0.3 and t < 0.7 {{ {ground} }}\n")
+    };
+    desk.put("frame.rt", middle("f.1.png"));
+    desk.put("kept.rt", middle("w.webp.frames/000003.exr"));
+    desk.put("g.2.png.made", "let size = 1m\n");
+    desk.put("g.2.png", desk.get("f.2.png"));
+    desk.put("record.rt", format!("import \"g.2.png.made\" as record\n{ball}"));
+    desk.put("h.3.png.checkpoint", "let size = 1m\n");
+    desk.put("checkpoint.rt", format!("import \"h.3.png.checkpoint\" as kept\n{ball}"));
+    for (scene, rest, file) in [
+        ("frame.rt", "-o f.{}.png", "f.1.png"),
+        ("kept.rt", "-o w.webp --resume", "w.webp.frames/000003.exr"),
+        ("record.rt", "-o g.{}.png --resume", "g.2.png.made"),
+        ("checkpoint.rt", "-o h.{}.png --resume", "h.3.png.checkpoint"),
+    ] {
+        let before = desk.get(file);
+        film(scene, rest).expect(2, &[&format!("`{file}` would be replaced")]);
+        assert!(desk.get(file) == before, "{file} was replaced");
+    }
+    // Nor what it writes beside it meanwhile.
+    desk.put(".rtc-n.png.tmp", "let size = 1m\n");
+    desk.put("aside.rt", format!("import \".rtc-n.png.tmp\" as aside\n{ball}"));
+    desk.run("build aside.rt --size 8x6 --samples 2 -o n.png").expect(2, &["`.rtc-n.png.tmp` has the name"]);
+    assert_eq!(desk.get(".rtc-n.png.tmp"), b"let size = 1m\n");
+}

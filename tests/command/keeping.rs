@@ -221,7 +221,31 @@ fn a_noise_target_goes_on_only_as_it_was_to_be_shown() {
     build(&desk, "--samples 600 --exposure 1 -o a.exr --checkpoint").expect(0, &[]);
     build(&desk, "--samples 600 --exposure 1 -o b.exr").expect(0, &[]);
     assert_same(&desk.path("a.exr"), &desk.path("b.exr"));
-    noise("--exposure 1").expect(2, &["`--exposure 1` (kept: 2)"]);
+    noise("--exposure 1").expect(2, &["no more than 512 are asked for: `--samples 600` goes on"]);
+    // Where all pixels have as many, none was chosen.
+    build(&desk, "--noise 2% --samples 700 --exposure 1 -o a.exr --checkpoint").expect(0, &[]);
+}
+
+#[test]
+fn what_is_kept_depends_on_nothing_but_what_was_asked_for() {
+    let desk = desk();
+    let kept = |every: &str| {
+        let flags = "--samples 64 --noise 0.1% -o a.exr --checkpoint --resume=never";
+        build(&desk, &format!("{flags} --checkpoint-every {every}")).expect(0, &[]);
+        desk.get("a.exr.checkpoint")
+    };
+    // Also where it was kept with the last sample, before that was judged.
+    assert!(kept("1h") == kept("1spp"));
+}
+
+#[test]
+fn a_share_is_replaced_by_no_checkpoint() {
+    let desk = desk();
+    build(&desk, "--samples 6 --shard 1/3 -o part.exr").expect(0, &[]);
+    let share = desk.get("part.exr");
+    build(&desk, "--samples 6 --checkpoint=part.exr --resume=never -o a.png")
+        .expect(2, &["`part.exr` would be replaced by the checkpoint, and holds share 1/3 of 6 samples"]);
+    assert!(desk.get("part.exr") == share);
 }
 
 #[test]
