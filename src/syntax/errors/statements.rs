@@ -174,6 +174,18 @@ pub(in crate::syntax) fn missing_in(sign: &str, span: Span) -> Diagnostic {
     unexpected(sign, span).at("`in` is wanted").help(format!("write `{}`", form("for"))).fix(span, "in")
 }
 
+/// `for each i in list`; `span` is up to the second word.
+pub(in crate::syntax) fn named_twice(word: &str, name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::E0001,
+        format!("unexpected `{word}`"),
+        Span { end: span.start + word.len() as u32, ..span },
+    )
+    .at("one name belongs between `for` and `in`")
+    .help(format!("write `for {name} in list {{ … }}`"))
+    .fix(span, "")
+}
+
 /// `for i in x: {`
 pub(in crate::syntax) fn before_block(token: &str, span: Span) -> Diagnostic {
     unexpected(token, span).at("the body should begin here").help("leave it out: `{` follows at once")
