@@ -5,6 +5,7 @@ use super::ast::{Argument, Broken, Entry, Expr, ExprKind, Field, Name, Statement
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements};
 use super::{BLANKS, PLACED_WORDS, is_name, is_word, leading, value};
+use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 use pest::iterators::Pairs;
 
@@ -149,7 +150,7 @@ impl<'t> Builder<'t> {
         }
         if self.holds_components(pair) {
             let behind = pair.as_str().trim_ascii_end().len();
-            self.report(errors::bare_components(self.at(comma - digits, comma + behind)));
+            self.report(self.bare_components(self.at(comma - digits, comma + behind)));
             return true;
         }
         let place = self.at(comma - digits, comma + 1 + number.len());
@@ -170,7 +171,7 @@ impl<'t> Builder<'t> {
             _ => None,
         };
         match value {
-            Some(value) => self.report(errors::bare_components(Span { start: value.span.start, ..all })),
+            Some(value) => self.report(self.bare_components(Span { start: value.span.start, ..all })),
             None => {
                 let rest = pair.as_str()[1..].trim_ascii_start();
                 let start = pair.as_span().end() - rest.len();
@@ -178,6 +179,11 @@ impl<'t> Builder<'t> {
                 self.report(errors::unexpected_entry(token, self.at(start, start + token.len()), false));
             }
         }
+    }
+
+    fn bare_components(&self, span: Span) -> Diagnostic {
+        let commas = self.written(span).map_or(0, |text| text.matches(',').count());
+        errors::bare_components(span, commas + 1)
     }
 
     /// `1 meter`: whether that is the slip.
@@ -215,6 +221,7 @@ impl<'t> Builder<'t> {
         if top && only == Some(Rule::bare_body) && !is_reserved(&name.text) {
             return self.signed_body(name, "=", value, span);
         }
+        let given = value.as_str();
         let (value, depth) = value::expression(self, value);
         if word.as_str() == "let" || (top && word.as_str() == "material") {
             self.report(errors::missing_name(word.as_str(), name.span));
@@ -223,7 +230,13 @@ impl<'t> Builder<'t> {
         if is_reserved(&name.text) && &name.text != "material" {
             self.report(statements::begins_nothing(&name.text, name.span));
         } else if top || self.begins_definition(&name.text) {
-            self.report(errors::missing_let(&name.text, name.span));
+            // `n = n + 1`
+            let changes =
+                given.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|word| word == name.text);
+            self.report(match changes {
+                true => errors::changed(&name.text, name.span),
+                false => errors::missing_let(&name.text, name.span),
+            });
         } else {
             let edit = self.at(word.as_span().end(), sign.as_span().end());
             self.report(errors::equals_in_field(&name.text, self.span(&sign), edit));
@@ -269,6 +282,9 @@ impl<'t> Builder<'t> {
         if let Some(named) = self.named_otherwise(&name, &value, span).filter(|_| !is_reserved(&name.text)) {
             return named;
         }
+        if let Some(declared) = self.type_before_name(&name, &value, span) {
+            return (declared, 0);
+        }
         if let Some(named) = self.name_of_words(&name, value.as_span().start(), top) {
             return (named, 0);
         }
@@ -307,6 +323,19 @@ impl<'t> Builder<'t> {
             self.report(errors::no_brace(&name.text, name.span, value_span));
         }
         (Entry::Broken(Broken { name: Some(name), span }), 0)
+    }
+
+    /// `length r = 1m`: a definition as languages have it that name its type.
+    fn type_before_name(&self, ty: &Name, value: &Node<'t>, span: Span) -> Option<Entry> {
+        let mut inner = value.clone().into_inner();
+        let (name, sign) = (inner.next()?, inner.next()?);
+        let named = sign.as_rule() == Rule::foreign_equals && is_name(name.as_str().trim_ascii_end());
+        if !named || !super::TYPE_WORDS.contains(&ty.text.as_str()) || is_reserved(&ty.text) {
+            return None;
+        }
+        let name = Name { text: name.as_str().trim_ascii_end().into(), span: self.trimmed(&name) };
+        self.report(statements::type_before_name(ty, &name));
+        Some(Entry::Broken(Broken { name: Some(name), span }))
     }
 
     /// `sphere ball = { … }`: a thing whose body stands otherwise.

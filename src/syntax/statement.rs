@@ -308,7 +308,8 @@ fn function<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Span) -> De
     match parts.next_if(|part| part.as_rule() == Rule::arrow) {
         Some(arrow) => {
             let sign = arrow.as_str().trim_ascii_end();
-            if sign != "->" {
+            // Without its parameters, what the sign stands before may be one of them.
+            if sign != "->" && place != name.span {
                 let touches = !builder.all_before(arrow.as_span().start()).ends_with(super::BLANKS);
                 builder.report(slips::wrong_arrow(sign, builder.trimmed(&arrow), touches));
             }

@@ -159,10 +159,11 @@ pub(in crate::syntax) fn angled_color(
 pub(super) const BARE_COMPONENTS: &str = "several values stand here without parentheses";
 
 /// `at: 0,1,0`
-pub(in crate::syntax) fn bare_components(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0001, BARE_COMPONENTS, span)
-        .at("more than one value")
-        .help("write `(x, y, z)`, with the unit behind it: `(0, 1, 0)m`")
+pub(in crate::syntax) fn bare_components(span: Span, count: usize) -> Diagnostic {
+    Diagnostic::new(Code::E0001, BARE_COMPONENTS, span).at("more than one value").help(match count {
+        2 => "write `(width, height)`, such as `(640, 480)`",
+        _ => "write `(x, y, z)`, with the unit behind it: `(0, 1, 0)m`",
+    })
 }
 
 /// `radius: 1,5m`

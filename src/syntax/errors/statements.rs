@@ -340,6 +340,25 @@ pub(in crate::syntax) fn missing_mark(span: Span) -> Diagnostic {
     unexpected("@", span).at("a word belongs behind this").help("there are `@off`, `@solo` and `@allow(…)`")
 }
 
+/// `@allow W0106 "why"`; `place` is that of what belongs into parentheses.
+pub(in crate::syntax) fn bare_arguments(code: &str, reason: &str, mark: Span, place: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, "what `@allow` takes stands in parentheses", place)
+        .at("a warning, and the reason")
+        .help(format!("write `@allow({code}, \"why\")`"))
+        .fix(Span { start: mark.end, ..place }, format!("({code}, {reason})"))
+}
+
+/// `length r = 1m`
+pub(in crate::syntax) fn type_before_name(ty: &Name, name: &Name) -> Diagnostic {
+    let (word, declared, span) = (&ty.text, &name.text, ty.span.to(name.span));
+    Diagnostic::new(Code::E0001, format!("`{declared}` is not declared by its type"), ty.span)
+        .at("a type")
+        .label(name.span, "what is declared")
+        .help(format!("write `let {declared} = …`, or `param {declared}: {word} = …` for a setting"))
+        .offer(format!("write `let {declared}`"), vec![(span, format!("let {declared}"))])
+        .offer(format!("write `param {declared}: {word}`"), vec![(span, format!("param {declared}: {word}"))])
+}
+
 /// `@off` before nothing; `written` is the mark with what is in its parentheses.
 pub(in crate::syntax) fn marks_nothing(mark: &Prefix, written: &str) -> Diagnostic {
     let word = format!("@{}", mark.name.text);
