@@ -216,6 +216,14 @@ impl Diagnostic {
         self
     }
 
+    /// Offers the mend in place of making it, where it is not certain after all.
+    pub fn ask(mut self, title: impl Into<String>) -> Diagnostic {
+        match self.fix.take() {
+            Some(fix) => self.offer(title, fix.edits),
+            None => self,
+        }
+    }
+
     /// Moves all that it points at.
     pub fn move_places(&mut self, moved: impl Fn(Span) -> Span) {
         let labels = self.labels.iter_mut().chain([&mut self.primary]).map(|label| &mut label.span);

@@ -4,6 +4,7 @@
 use super::notes::Meaning;
 use super::program::{FieldPlace, PartId};
 use super::types::{FieldSet, Kind, Making, Type};
+use super::unknown::ask;
 use super::{Checker, errors};
 use crate::diagnostic::Diagnostic;
 use crate::schema::{KindId, PLACED, Preset, Rule, familiar};
@@ -163,6 +164,8 @@ impl Checker<'_> {
             all.iter().zip(free).filter(|(_, free)| **free).map(|(name, _)| *name).collect();
         let kind_name = self.kind_name(kind);
         let diagnostic = errors::unknown_field(&kind_name, kind.category(), name, &free, &all);
+        // Of a param, it may be the declaration that is mistyped.
+        let diagnostic = if matches!(kind, Kind::Part(_)) { ask(diagnostic) } else { diagnostic };
         let joined =
             familiar::field(&kind_name, kind.category(), &name.text).is_some_and(|here| !here.same_value);
         let before = told.filter(|_| joined).and_then(|told| self.diagnostics.get_mut(told));

@@ -165,8 +165,8 @@ impl<'a> Checker<'a> {
     }
 
     /// Reports an unknown name.
-    fn report_lost(&mut self, name: &SmolStr, mut diagnostic: Diagnostic) {
-        self.ask_unless_sure(name, &mut diagnostic);
+    fn report_lost(&mut self, name: &SmolStr, diagnostic: Diagnostic) {
+        let diagnostic = self.ask_unless_sure(name, diagnostic);
         self.lost.push((self.diagnostics.len(), name.clone()));
         self.report(diagnostic);
     }
@@ -190,6 +190,10 @@ impl<'a> Checker<'a> {
         let found = check(self);
         self.diagnostics.truncate(reported);
         self.lost.truncate(lost);
+        for scope in &mut self.scopes {
+            let kept = scope.guessed.partition_point(|index| *index < reported);
+            scope.guessed.truncate(kept);
+        }
         self.program.allows.truncate(allows);
         found
     }

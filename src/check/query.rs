@@ -292,7 +292,7 @@ impl Checker<'_> {
                 true => errors::unknown(Code::E0101, "function", &path.first, &self.function_names()),
                 false => errors::unknown_name(&path.first, &self.value_names()),
             };
-            self.report(diagnostic);
+            self.report_lost(&path.first.text, diagnostic);
             return None;
         };
         self.note(path.first.span, found.meaning);

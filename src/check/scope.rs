@@ -24,6 +24,10 @@ pub(super) struct Scope {
     pub(super) known: Vec<Known>,
     /// How many parts, functions and files are around it.
     level: usize,
+    /// Whether something in it could not be understood that may declare any name.
+    pub(super) nameless: bool,
+    /// The unknown names that are probably one of its own, by the indices of their diagnostics.
+    pub(super) guessed: Vec<usize>,
 }
 
 /// What a body belongs to.
@@ -55,6 +59,22 @@ pub(super) struct Known {
     pub(super) free: bool,
     /// Whether what declares it could not be understood: nothing is said to hide it.
     lost: bool,
+    /// Where it can stand, as far as what declares it shows, whose type may not be known yet.
+    form: Form,
+    /// Whether that is half typed, as its name may be.
+    pub(super) doubtful: bool,
+}
+
+/// Where a name can stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    Value,
+    /// As a value, and before braces.
+    Made,
+    /// Before braces.
+    Part,
+    /// Before parentheses.
+    Function,
 }
 
 /// A statement, many of them, or the name of one that could not be understood.
@@ -104,6 +124,33 @@ impl<'t> Item<'t> {
         }
     }
 
+    fn form(&self) -> Form {
+        let Item::Statement(statement) = self else { return Form::Value };
+        match &statement.kind {
+            Tree::Function { .. } => Form::Function,
+            Tree::Part { .. } => Form::Part,
+            Tree::Import { .. } => Form::Made,
+            Tree::Definition { value, .. } if matches!(value.kind, ast::ExprKind::Construct(_)) => Form::Made,
+            _ => Form::Value,
+        }
+    }
+
+    /// Whether a part of what declares a name is missing.
+    fn is_half_typed(&self) -> bool {
+        let Item::Statement(statement) = self else { return false };
+        let invalid = |value: &ast::Expr| matches!(value.kind, ast::ExprKind::Invalid);
+        let untyped = |ty: &ast::TypeName| matches!(ty, ast::TypeName::Invalid(_));
+        match &statement.kind {
+            Tree::Definition { value, .. } => invalid(value),
+            Tree::Param { ty, default, .. } => untyped(ty) || invalid(default),
+            Tree::Function { parameters, result, value, .. } => {
+                parameters.iter().any(|parameter| untyped(&parameter.ty)) || untyped(result) || invalid(value)
+            }
+            Tree::Part { body, .. } => body.span.range().is_empty(),
+            _ => false,
+        }
+    }
+
     /// Where it begins.
     pub(super) fn start(&self) -> u32 {
         match self {
@@ -122,7 +169,9 @@ impl<'t> Item<'t> {
 impl Checker<'_> {
     /// Begins a scope that declares nothing yet.
     pub(super) fn scope(&self, place: Place, span: Span) -> Scope {
-        Scope { place, span, names: BTreeMap::new(), known: vec![], level: self.frames.len() }
+        let level = self.frames.len();
+        let (names, known, guessed) = (BTreeMap::new(), vec![], vec![]);
+        Scope { place, span, names, known, level, nameless: false, guessed }
     }
 
     /// The innermost scope.
@@ -157,13 +206,17 @@ impl Checker<'_> {
                 scope.names.insert(name.text.clone(), scope.known.len());
             }
         }
-        scope.known.push(Known { name: name.clone(), ty, slot, item: 0, used: false, free, lost: false });
+        let name = name.clone();
+        let (item, used, lost, form, doubtful) = (0, false, false, Form::Value, false);
+        scope.known.push(Known { name, ty, slot, item, used, free, lost, form, doubtful });
         slot
     }
 
     /// Declares the names of items, and gives which of them each known name belongs to.
     pub(super) fn declare(&mut self, items: &[Item], place: Place, span: Span) -> Scope {
         let mut scope = self.scope(place, span);
+        scope.nameless =
+            items.iter().any(|item| matches!(item, Item::Broken(broken) if broken.name.is_none()));
         for (item, statement) in items.iter().enumerate() {
             let (Item::Statement(_), Some(name)) = (statement, statement.name()) else { continue };
             let free = statement.drawn() || place == Place::Imported;
@@ -186,6 +239,8 @@ impl Checker<'_> {
                 used: false,
                 free,
                 lost: false,
+                form: statement.form(),
+                doubtful: statement.is_half_typed(),
             });
         }
         // A broken item's name counts as declared where nothing else declares it: its slip is one error.
@@ -195,7 +250,8 @@ impl Checker<'_> {
                 scope.names.insert(name.text.clone(), scope.known.len());
                 let slot = self.slot();
                 let (name, ty) = (name.clone(), Type::Invalid);
-                scope.known.push(Known { name, ty, slot, item, used: true, free: true, lost: true });
+                let (used, free, lost, form, doubtful) = (true, true, true, Form::Value, true);
+                scope.known.push(Known { name, ty, slot, item, used, free, lost, form, doubtful });
             }
         }
         scope
@@ -206,6 +262,7 @@ impl Checker<'_> {
     pub(super) fn close(&mut self, block: Option<&mut Block>) {
         let Some(scope) = self.scopes.pop() else { return };
         self.note_scope(&scope);
+        self.ask_of_unused(&scope);
         for known in scope.known.iter().filter(|known| !known.used && !known.free) {
             self.report(errors::unused(&known.name, &known.ty));
         }
@@ -316,15 +373,18 @@ impl Checker<'_> {
         if left.is_some() { &self.scopes } else { &[] }
     }
 
-    fn declared_names(&self, fits: impl Fn(&Type) -> bool) -> Vec<&str> {
+    fn declared_names(&self, fits: impl Fn(&Known) -> bool) -> Vec<&str> {
         let scopes = self.comparable().iter();
         let known = scopes.flat_map(|scope| scope.names.values().map(|&known| &scope.known[known]));
-        known.filter(|known| fits(&known.ty)).map(|known| known.name.text.as_str()).collect()
+        known
+            .filter(|known| !known.name.text.is_empty() && fits(known))
+            .map(|known| known.name.text.as_str())
+            .collect()
     }
 
     /// Names in scope that may stand for a value, for suggestions.
     pub(super) fn value_names(&self) -> Vec<&str> {
-        let mut names = self.declared_names(|ty| !matches!(ty, Type::Part(_) | Type::Function(_)));
+        let mut names = self.declared_names(|known| !matches!(known.form, Form::Part | Form::Function));
         names.extend(color::NAMED.iter().map(|(name, _)| *name));
         names
     }
@@ -332,14 +392,16 @@ impl Checker<'_> {
     /// Names that may stand before `{`, for suggestions.
     pub(super) fn kind_names(&self) -> Vec<&str> {
         let mut names: Vec<&str> = schema::KINDS.iter().map(|kind| kind.name).collect();
-        names.extend(self.declared_names(|ty| matches!(ty, Type::Made(_) | Type::Part(_) | Type::File(_))));
+        names.extend(self.declared_names(|known| {
+            matches!(known.form, Form::Made | Form::Part) || matches!(known.ty, Type::Made(_))
+        }));
         names
     }
 
     /// Names that may stand before `(`, for suggestions.
     pub(super) fn function_names(&self) -> Vec<&str> {
         let mut names: Vec<&str> = functions::Function::ALL.iter().map(|function| function.name()).collect();
-        names.extend(self.declared_names(|ty| matches!(ty, Type::Function(_))));
+        names.extend(self.declared_names(|known| known.form == Form::Function));
         names
     }
 }

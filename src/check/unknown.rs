@@ -2,9 +2,10 @@
 
 use super::declared::Declared;
 use super::functions::Function;
+use super::scope::Scope;
 use super::types::Type;
 use super::{Checker, Expr, errors};
-use crate::diagnostic::{Diagnostic, Fix, Offer};
+use crate::diagnostic::Diagnostic;
 use crate::schema::{self, FieldType};
 use crate::span::Span;
 use crate::syntax::RESERVED;
@@ -57,30 +58,57 @@ impl Checker<'_> {
         Some((Name { text: text.clone(), span: value.span }, found.ty))
     }
 
-    /// Offers a mend in place of making it, where another may be meant: a name that is only half typed, or one that is
-    /// mistyped where it is declared, which then has no use so far.
-    pub(super) fn ask_unless_sure(&self, name: &str, diagnostic: &mut Diagnostic) {
-        let edits = diagnostic.fix.as_ref().map_or(&[][..], |fix| &fix.edits);
-        let [(place, meant)] = edits else { return };
+    /// Offers the mend of an unknown name, the next diagnostic, in place of making it, where another may be meant: a name
+    /// that is only half typed, or one that is mistyped where it is declared. That a name has other uses is known when its
+    /// scope is closed.
+    pub(super) fn ask_unless_sure(&mut self, name: &str, diagnostic: Diagnostic) -> Diagnostic {
+        let Some(meant) = replacement(&diagnostic) else { return diagnostic };
         let longer = |word: &str| word.len() > name.len() && word.starts_with(name) && word != meant;
         let half_typed = RESERVED.iter().any(|word| longer(word))
             || Function::ALL.iter().any(|function| longer(function.name()))
             || self.scopes.iter().any(|scope| scope.names.keys().any(|word| longer(word)));
-        let declared = self
-            .scopes
-            .iter()
-            .rev()
-            .find_map(|scope| scope.names.get(meant.as_str()).map(|&at| &scope.known[at]));
-        if half_typed || declared.is_some_and(|declared| !declared.used) {
-            let offer = (format!("replace it with `{meant}`"), vec![(*place, meant.clone())]);
-            diagnostic.fix = None;
-            diagnostic.offers.push(Offer { title: offer.0, fix: Fix { edits: offer.1 } });
+        if half_typed || self.scopes.iter().any(|scope| scope.nameless) {
+            return ask(diagnostic);
+        }
+        let declaring = self.scopes.iter_mut().rev().find(|scope| scope.names.contains_key(meant));
+        if let Some(scope) = declaring {
+            if scope.known[scope.names[meant]].doubtful {
+                return ask(diagnostic);
+            }
+            scope.guessed.push(self.diagnostics.len());
+        }
+        diagnostic
+    }
+
+    /// Offers the mends to names of a scope that have no other use.
+    pub(super) fn ask_of_unused(&mut self, scope: &Scope) {
+        for &index in &scope.guessed {
+            let known = replacement(&self.diagnostics[index]).and_then(|meant| scope.names.get(meant));
+            if known.is_some_and(|&known| !scope.known[known].used) {
+                self.diagnostics[index] = ask(self.diagnostics[index].clone());
+            }
         }
     }
 
     /// Whether a place lies in a setting from outside.
     pub(super) fn is_setting(&self, span: Span) -> bool {
         self.settings.iter().any(|setting| setting.value.span.source == span.source)
+    }
+}
+
+/// What a mend puts in place of a name.
+fn replacement(diagnostic: &Diagnostic) -> Option<&str> {
+    match &diagnostic.fix.as_ref()?.edits[..] {
+        [(_, meant)] => Some(meant),
+        _ => None,
+    }
+}
+
+/// Offers to replace a name in place of doing it.
+pub(super) fn ask(diagnostic: Diagnostic) -> Diagnostic {
+    match replacement(&diagnostic).map(|meant| format!("replace it with `{meant}`")) {
+        Some(title) => diagnostic.ask(title),
+        None => diagnostic,
     }
 }
 

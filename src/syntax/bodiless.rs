@@ -3,7 +3,7 @@
 use super::ast::{Broken, Entry, Name};
 use super::build::{Builder, Node, is_reserved};
 use super::errors::{self, statements};
-use super::{BLANKS, PLACED_WORDS};
+use super::{BLANKS, PLACED_WORDS, is_name, leading};
 use crate::span::Span;
 
 impl Builder<'_> {
@@ -30,7 +30,7 @@ impl Builder<'_> {
             return None;
         }
         let rest = self.after(end);
-        let path = leading(rest, |c| is_part(c) || c == '.');
+        let path = leading(rest, ".");
         let whole = path.strip_suffix('.').unwrap_or(path);
         if !whole.split('.').skip(1).all(is_name) {
             return None;
@@ -47,7 +47,7 @@ impl Builder<'_> {
             self.report(diagnostic);
             return Some(name);
         }
-        let second = Some(leading(behind, is_part)).filter(|second| is_name(second)).unwrap_or("");
+        let second = Some(leading(behind, "")).filter(|second| is_name(second)).unwrap_or("");
         let whole = first.span.to(self.at(end, end + path.len()));
         let path = format!("{}{path}", first.text);
         let name = Name { text: second.into(), span: self.at(start, start + second.len()) };
@@ -79,27 +79,9 @@ impl Builder<'_> {
     /// `at: (0, 1, 0)m power: 60W`, without a comma: what begins behind a whole entry, if it has a name, is given.
     pub(super) fn begins_otherwise(&self, pair: &Node) -> Option<Entry> {
         let text = pair.as_str().trim_ascii_start();
-        let word = Some(leading(text, is_part)).filter(|word| is_name(word))?;
+        let word = Some(leading(text, "")).filter(|word| is_name(word))?;
         let start = pair.as_span().start() + pair.as_str().len() - text.len();
         let name = Name { text: word.into(), span: self.at(start, start + word.len()) };
         Some(Entry::Broken(Broken { name: Some(name), span: self.trimmed(pair) }))
     }
-}
-
-/// Whether a character is one of a word.
-fn is_part(c: char) -> bool {
-    c.is_alphanumeric() || c == '_'
-}
-
-/// Whether a text is one word, and may be a name.
-fn is_name(text: &str) -> bool {
-    !text.is_empty()
-        && text.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
-        && !text.starts_with(|c: char| c.is_ascii_digit())
-        && !is_reserved(text)
-}
-
-/// What a text begins with, as far as its characters are of a sort.
-fn leading(text: &str, is: impl Fn(char) -> bool) -> &str {
-    &text[..text.find(|c| !is(c)).unwrap_or(text.len())]
 }

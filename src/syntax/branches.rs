@@ -1,10 +1,10 @@
 //! Repetition, choice and assertions. The grammar takes what there is; here it is said what is missing.
 
-use super::ast::{Body, Expr, ExprKind, StatementKind};
-use super::build::{Builder, Deep, Node, Rule, is_reserved};
+use super::ast::{Body, Expr, ExprKind, Name, StatementKind};
+use super::build::{Builder, Deep, Node, Rule};
 use super::errors::{self, statements as slips};
 use super::statement::{declared, empty, invalid};
-use super::value;
+use super::{is_name, value};
 use crate::span::Span;
 use pest::iterators::Pairs;
 
@@ -33,6 +33,15 @@ pub(super) fn repetition<'t>(
                 builder.at(builder.text_len() - behind.len(), builder.text_len() - behind.len() + word.len());
             let more = behind[word.len()..].trim_ascii_start();
             let body = parts.clone().find(|part| part.as_rule() == Rule::body);
+            if super::leading(more, "") == "in" && is_name(word) {
+                // `for each i in list { … }`
+                let extra = Span { end: place.start, ..variable.span };
+                builder.report(slips::named_twice(&variable.text, word, extra));
+                let variable = Name { text: word.into(), span: place };
+                let (list, span) = (invalid(place), span.after());
+                let (body, depth) = body.map_or_else(|| (empty(span), 0), |body| builder.block(body));
+                return (StatementKind::For { variable, list, body }, depth + 1);
+            }
             if matches!(word, "of" | "ni" | "n" | "i" | "im" | "on" | "is")
                 && !more.is_empty()
                 && !more.starts_with('{')
@@ -116,11 +125,7 @@ fn block<'t>(
 
 /// Whether a text is that of a kind, and of a name behind it.
 fn is_kind(text: &str) -> bool {
-    let word = |word: &str| {
-        word.starts_with(|c: char| c.is_ascii_alphabetic())
-            && word.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'.'))
-            && !is_reserved(word)
-    };
+    let word = |path: &str| path.split('.').all(is_name);
     text.split_ascii_whitespace().count() <= 2 && text.split_ascii_whitespace().all(word)
 }
 

@@ -156,6 +156,12 @@ impl<'t> Builder<'t> {
         self.source.text.as_bytes().get(place as usize).is_some_and(u8::is_ascii_whitespace)
     }
 
+    /// Whether nothing but blanks stands behind a place of the source on its line.
+    pub(super) fn ends_line(&self, place: u32) -> bool {
+        let rest = self.source.text.get(place as usize..).unwrap_or("");
+        rest.trim_start_matches(BLANKS).starts_with('\n') || rest.trim_start_matches(BLANKS).is_empty()
+    }
+
     /// The text behind an offset.
     pub(super) fn after(&self, offset: usize) -> &'t str {
         &self.text[offset..]
@@ -253,7 +259,14 @@ impl<'t> Builder<'t> {
                 }
                 Rule::extra => {
                     if !self.long_unit(&pair) {
-                        self.unexpected(&pair, errors::unexpected_extra);
+                        self.unexpected(&pair, |token, span| {
+                            let mut slip = errors::unexpected_extra(token, span);
+                            // `pow#(2)`: what touches begins no comment.
+                            slip.fix = slip
+                                .fix
+                                .filter(|_| token != "#" || self.is_blank(span.start.saturating_sub(1)));
+                            slip
+                        });
                     }
                     entries.last_mut().into_iter().for_each(spoil);
                     entries.extend(self.begins_otherwise(&pair));

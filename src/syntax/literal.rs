@@ -3,6 +3,7 @@
 use super::ast::{ExprKind, Name};
 use super::build::{Builder, Node, Rule};
 use super::errors;
+use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 use smol_str::{SmolStr, SmolStrBuilder};
 
@@ -16,7 +17,7 @@ pub(super) fn literal(builder: &Builder, pair: Node) -> ExprKind {
     let number = inner.next().expect("a literal begins with a number").as_str();
     let unit = inner.next();
     if unit.as_ref().is_some_and(|unit| is_misread(number, unit.as_str())) {
-        builder.report(errors::bad_number(all, span));
+        builder.report(bad_number(builder, all, span));
         return ExprKind::Invalid;
     }
     let value = if number.contains('_') { number.replace('_', "").parse() } else { number.parse() };
@@ -94,4 +95,14 @@ pub(super) fn text(builder: &Builder, pair: &Node) -> SmolStr {
         }
     }
     resolved.finish()
+}
+
+/// What is said of a number that is none. More digits may follow a point that a line ends with.
+pub(super) fn bad_number(builder: &Builder, text: &str, span: Span) -> Diagnostic {
+    let slip = errors::bad_number(text, span);
+    let digits = text.strip_suffix('.').filter(|_| builder.ends_line(span.end));
+    match digits {
+        Some(digits) => slip.ask(format!("write `{digits}`")),
+        None => slip,
+    }
 }

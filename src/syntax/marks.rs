@@ -3,7 +3,8 @@
 use super::ast::{Broken, Entry, Prefix};
 use super::build::{Builder, Deep, Node};
 use super::errors::statements;
-use super::{Rule, elements};
+use super::{BLANKS, Rule, elements, is_name};
+use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 
 impl<'t> Builder<'t> {
@@ -19,6 +20,10 @@ impl<'t> Builder<'t> {
                 prefixes.extend(prefix);
                 continue;
             }
+            if let Some(slip) = prefixes.last().and_then(|mark| self.bare_arguments(mark, &pair)) {
+                self.report(slip);
+                return (Entry::Broken(Broken { name: None, span }), 0);
+            }
             let (mut entry, depth) = self.entry(pair, top);
             match &mut entry {
                 Entry::Statement(statement) => {
@@ -31,7 +36,7 @@ impl<'t> Builder<'t> {
                         self.report(statements::marks_field(&mark, &field.name.text, prefix.span));
                     }
                 }
-                Entry::Broken(broken) => broken.span = span,
+                Entry::Broken(broken) => broken.span = span.to(broken.span),
                 // The grammar knows nothing of them.
                 Entry::Rows(_) => {}
             }
@@ -41,6 +46,16 @@ impl<'t> Builder<'t> {
             self.report(statements::marks_nothing(last, written));
         }
         (Entry::Broken(Broken { name: None, span }), 0)
+    }
+
+    /// `@allow W0106 "why"`: what stands behind a mark without parentheses, if that is the slip.
+    fn bare_arguments(&self, mark: &Prefix, pair: &Node) -> Option<Diagnostic> {
+        let text = pair.as_str().trim_ascii_end();
+        let (code, reason) = text.split_once(BLANKS)?;
+        let reason = reason.trim_start_matches(BLANKS);
+        let bare = &mark.name.text == "allow" && mark.arguments.is_none() && is_name(code);
+        let place = self.trimmed(pair);
+        (bare && reason.starts_with('"')).then(|| statements::bare_arguments(code, reason, mark.span, place))
     }
 
     fn prefix(&self, pair: Node<'t>) -> Deep<Option<Prefix>> {

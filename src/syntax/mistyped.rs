@@ -3,7 +3,7 @@
 
 use super::ast::{Broken, Entry, Name, StatementKind, TypeName};
 use super::build::{Builder, Node, is_reserved};
-use super::{BLANKS, TYPE_WORDS, errors, is_word};
+use super::{BLANKS, TYPE_WORDS, errors, is_name, leading};
 use crate::span::Span;
 
 /// The longest word that is compared: comparing takes time with the square of the length.
@@ -32,10 +32,12 @@ impl Builder<'_> {
         let keyword = FIRST.iter().find(|keyword| is_near(&word.text, keyword) && has_form(keyword, line))?;
         self.report(errors::mistyped(keyword, word));
         let behind = line.trim_start_matches(BLANKS);
-        let name = Some(leading(behind)).filter(|name| is_name(name));
+        let name = Some(leading(behind, "")).filter(|name| is_name(name));
         let declares = matches!(*keyword, "let" | "material" | "param" | "fn");
         let name = match *keyword {
-            "import" => behind.rsplit_once(" as ").map(|(_, name)| leading(name.trim_start_matches(BLANKS))),
+            "import" => {
+                behind.rsplit_once(" as ").map(|(_, name)| leading(name.trim_start_matches(BLANKS), ""))
+            }
             _ => name.filter(|_| declares),
         };
         let name = name.filter(|name| is_name(name)).map(|name| {
@@ -56,12 +58,17 @@ impl Builder<'_> {
     /// `if c { … } else sphere { … }`, `fn f() length = 1m`: whether what is crowded belongs to the statement before it, of
     /// which it was said what is missing.
     pub(super) fn goes_on(&self, pair: &Node, before: Option<&Entry>) -> bool {
-        let Some(Entry::Statement(statement)) = before else { return false };
+        let statement = match before {
+            Some(Entry::Statement(statement)) => statement,
+            // `sphere my ball { … }`: it reaches into what is crowded.
+            Some(Entry::Broken(broken)) => return broken.span.end > self.span(pair).start,
+            _ => return false,
+        };
         match &statement.kind {
             StatementKind::If { otherwise: Some(body), .. } => body.span.range().is_empty(),
             StatementKind::Function { result: TypeName::Invalid(_), .. } => {
                 let behind = self.after(pair.as_span().start()).trim_start_matches(BLANKS);
-                TYPE_WORDS.contains(&leading(behind))
+                TYPE_WORDS.contains(&leading(behind, ""))
             }
             _ => false,
         }
@@ -75,9 +82,9 @@ impl Builder<'_> {
         }
         let start = pair.as_span().start();
         let rest = self.after(start).trim_start_matches(BLANKS);
-        let word = leading(rest);
+        let word = leading(rest, "");
         let behind = rest[word.len()..].trim_start_matches(BLANKS);
-        let goes_on = behind.starts_with('{') || leading(behind) == "if";
+        let goes_on = behind.starts_with('{') || leading(behind, "") == "if";
         if !goes_on || !is_near(word, "else") {
             return false;
         }
@@ -91,7 +98,7 @@ impl Builder<'_> {
 /// Whether what stands behind the first word of a line is that of a statement.
 fn has_form(keyword: &str, line: &str) -> bool {
     let line = line.trim_start_matches(BLANKS);
-    let name = leading(line);
+    let name = leading(line, "");
     let behind = line[name.len()..].trim_start_matches(BLANKS);
     match keyword {
         "let" | "material" => {
@@ -101,7 +108,7 @@ fn has_form(keyword: &str, line: &str) -> bool {
         "param" => is_name(name) && behind.starts_with(':') && behind.contains('='),
         "import" => line.starts_with('"') && !line.contains('{'),
         "fn" => is_name(name) && behind.starts_with('(') && behind.contains("->"),
-        "for" => is_name(name) && leading(behind) == "in",
+        "for" => is_name(name) && leading(behind, "") == "in",
         "if" => {
             let head = line.split_once('{').map_or("", |(head, _)| head);
             !line.starts_with('<') && ["==", "!=", "<", ">"].iter().any(|sign| head.contains(sign))
@@ -110,14 +117,4 @@ fn has_form(keyword: &str, line: &str) -> bool {
         "else" => name == "if",
         _ => !(behind.is_empty() || behind.starts_with([':', '{', '=']) && !behind.starts_with("==")),
     }
-}
-
-/// Whether a text is one word, and may be a name.
-fn is_name(text: &str) -> bool {
-    is_word(text) && !is_reserved(text)
-}
-
-/// The word that a text begins with.
-pub(super) fn leading(text: &str) -> &str {
-    &text[..text.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(text.len())]
 }

@@ -21,6 +21,7 @@ mod literal;
 mod lookalikes;
 mod marks;
 mod mistyped;
+mod names;
 mod places;
 mod remembered;
 mod rows;
@@ -52,6 +53,17 @@ pub const NAMING_WORDS: &[&str] = &["let", "material", "param", "part", "fn", "f
 /// Whether a text is one word, as names are and the words of the language.
 pub fn is_word(text: &str) -> bool {
     Grammar::parse(Rule::word, text).is_ok_and(|found| found.as_str() == text)
+}
+
+/// Whether a text is one word that may be a name.
+pub(crate) fn is_name(text: &str) -> bool {
+    is_word(text) && !RESERVED.contains(&text)
+}
+
+/// The word that a text begins with, in which these signs count as letters.
+fn leading<'t>(text: &'t str, signs: &str) -> &'t str {
+    let ends = |c: char| !(c.is_alphanumeric() || c == '_' || signs.contains(c));
+    &text[..text.find(ends).unwrap_or(text.len())]
 }
 
 /// The words that name types, as far as the form of a statement depends on them: `param int count` is the wrong way

@@ -1,11 +1,10 @@
 //! Entries with a slip in their form: what is said of them, and what is still understood.
 
-use super::BLANKS;
 use super::angled;
 use super::ast::{Argument, Broken, Entry, Expr, ExprKind, Field, Name, StatementKind, TypeName};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements};
-use super::value;
+use super::{BLANKS, PLACED_WORDS, is_name, is_word, leading, value};
 use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 use pest::iterators::Pairs;
@@ -151,7 +150,7 @@ impl<'t> Builder<'t> {
         }
         if self.holds_components(pair) {
             let behind = pair.as_str().trim_ascii_end().len();
-            self.report(errors::bare_components(self.at(comma - digits, comma + behind)));
+            self.report(self.bare_components(self.at(comma - digits, comma + behind)));
             return true;
         }
         let place = self.at(comma - digits, comma + 1 + number.len());
@@ -172,7 +171,7 @@ impl<'t> Builder<'t> {
             _ => None,
         };
         match value {
-            Some(value) => self.report(errors::bare_components(Span { start: value.span.start, ..all })),
+            Some(value) => self.report(self.bare_components(Span { start: value.span.start, ..all })),
             None => {
                 let rest = pair.as_str()[1..].trim_ascii_start();
                 let start = pair.as_span().end() - rest.len();
@@ -180,6 +179,11 @@ impl<'t> Builder<'t> {
                 self.report(errors::unexpected_entry(token, self.at(start, start + token.len()), false));
             }
         }
+    }
+
+    fn bare_components(&self, span: Span) -> Diagnostic {
+        let commas = self.written(span).map_or(0, |text| text.matches(',').count());
+        errors::bare_components(span, commas + 1)
     }
 
     /// `1 meter`: whether that is the slip.
@@ -217,6 +221,7 @@ impl<'t> Builder<'t> {
         if top && only == Some(Rule::bare_body) && !is_reserved(&name.text) {
             return self.signed_body(name, "=", value, span);
         }
+        let given = value.as_str();
         let (value, depth) = value::expression(self, value);
         if word.as_str() == "let" || (top && word.as_str() == "material") {
             self.report(errors::missing_name(word.as_str(), name.span));
@@ -224,8 +229,14 @@ impl<'t> Builder<'t> {
         }
         if is_reserved(&name.text) && &name.text != "material" {
             self.report(statements::begins_nothing(&name.text, name.span));
-        } else if top {
-            self.report(errors::missing_let(&name.text, name.span));
+        } else if top || self.begins_definition(&name.text) {
+            // `n = n + 1`
+            let changes =
+                given.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|word| word == name.text);
+            self.report(match changes {
+                true => errors::changed(&name.text, name.span),
+                false => errors::missing_let(&name.text, name.span),
+            });
         } else {
             let edit = self.at(word.as_span().end(), sign.as_span().end());
             self.report(errors::equals_in_field(&name.text, self.span(&sign), edit));
@@ -239,8 +250,7 @@ impl<'t> Builder<'t> {
         let name = self.name(&inner.next().expect("this slip has a name"));
         let start = name.span.range().start - self.base();
         let text = self.after(start);
-        let end = text.find(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '-'))).unwrap_or(text.len());
-        let whole = text[..end].trim_end_matches('-');
+        let whole = leading(text, "-").trim_end_matches('-');
         if whole.contains('-') && text[whole.len()..].trim_start_matches(BLANKS).starts_with('=') {
             self.report(errors::no_name(keyword.as_str(), whole, self.at(start, start + whole.len())));
             return (Entry::Broken(Broken { name: Some(name), span }), 0);
@@ -271,6 +281,12 @@ impl<'t> Builder<'t> {
         let field = &name.text == "material" && !top;
         if let Some(named) = self.named_otherwise(&name, &value, span).filter(|_| !is_reserved(&name.text)) {
             return named;
+        }
+        if let Some(declared) = self.type_before_name(&name, &value, span) {
+            return (declared, 0);
+        }
+        if let Some(named) = self.name_of_words(&name, value.as_span().start(), top) {
+            return (named, 0);
         }
         let no_name = self.no_name(&name.text, value.as_span().start());
         if let Some((diagnostic, name)) = no_name.filter(|_| !is_reserved(&name.text)) {
@@ -309,13 +325,26 @@ impl<'t> Builder<'t> {
         (Entry::Broken(Broken { name: Some(name), span }), 0)
     }
 
+    /// `length r = 1m`: a definition as languages have it that name its type.
+    fn type_before_name(&self, ty: &Name, value: &Node<'t>, span: Span) -> Option<Entry> {
+        let mut inner = value.clone().into_inner();
+        let (name, sign) = (inner.next()?, inner.next()?);
+        let named = sign.as_rule() == Rule::foreign_equals && is_name(name.as_str().trim_ascii_end());
+        if !named || !super::TYPE_WORDS.contains(&ty.text.as_str()) || is_reserved(&ty.text) {
+            return None;
+        }
+        let name = Name { text: name.as_str().trim_ascii_end().into(), span: self.trimmed(&name) };
+        self.report(statements::type_before_name(ty, &name));
+        Some(Entry::Broken(Broken { name: Some(name), span }))
+    }
+
     /// `sphere ball = { … }`: a thing whose body stands otherwise.
     fn named_otherwise(&self, kind: &Name, value: &Node<'t>, span: Span) -> Option<Deep<Entry>> {
         let mut inner = value.clone().into_inner();
         let (first, sign) = (inner.next()?, inner.next());
         let written = first.as_str().trim_ascii_end();
         let place = self.trimmed(&first);
-        let sign = sign.filter(|sign| sign.as_rule() == Rule::foreign_equals && is_word(written))?;
+        let sign = sign.filter(|sign| sign.as_rule() == Rule::foreign_equals && is_name(written))?;
         let body = inner.next().filter(|body| body.as_rule() == Rule::bare_body)?.into_inner().next()?;
         let name = Name { text: written.into(), span: place };
         let edit = Span { start: place.end, end: self.span(&body).start, ..self.span(&sign) };
@@ -329,35 +358,10 @@ impl<'t> Builder<'t> {
         })
     }
 
-    /// `sphere "ball" { … }`, `sphere 2nd { … }`, `sphere my-ball { … }`: what stands as the name of a thing and cannot
-    /// be one, and the name that is in it.
-    pub(super) fn no_name(&self, kind: &str, start: usize) -> Option<(Diagnostic, Option<Name>)> {
-        let text = self.after(start);
-        if let Some(quoted) = text.strip_prefix('"') {
-            let mut escaped = false;
-            let end = quoted.find(|c| {
-                let ends = c == '\n' || c == '"' && !escaped;
-                escaped = c == '\\' && !escaped;
-                ends
-            })?;
-            let (inside, behind) = quoted.split_at(end);
-            let thing = behind.strip_prefix('"')?.trim_start_matches(BLANKS).starts_with('{');
-            let name = Name { text: inside.into(), span: self.at(start + 1, start + 1 + end) };
-            let name = Some(name).filter(|_| is_word(inside));
-            let whole = self.at(start, start + end + 2);
-            return thing.then(|| (errors::quoted_name(name.as_ref(), whole), name));
-        }
-        let is_sign = |c: char| !c.is_ascii() && !c.is_alphanumeric() && !c.is_whitespace();
-        let is_part = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-') || is_sign(c);
-        let end = text.find(|c| !is_part(c)).unwrap_or(text.len());
-        let name = &text[..end];
-        let thing = text[end..].trim_start_matches(BLANKS).starts_with('{');
-        if thing && name.contains(is_sign) {
-            return Some((errors::signs_in_name(name, self.at(start, start + end)), None));
-        }
-        let apart = name.starts_with(|c: char| c.is_ascii_digit()) || name.contains('-');
-        let sound = apart && !name.starts_with('-') && !name.ends_with('-');
-        (thing && sound).then(|| (errors::no_name(kind, name, self.at(start, start + end)), None))
+    /// Whether `x = 5` at this place is a definition without its word: in a part or a group, which have few fields.
+    fn begins_definition(&self, word: &str) -> bool {
+        let holds_things = self.declares.get() || self.grouped.get();
+        holds_things && word != "material" && !PLACED_WORDS.contains(&word)
     }
 
     /// Whether what was taken for a value is the name of a field, with `:` behind it.
@@ -372,7 +376,7 @@ impl<'t> Builder<'t> {
         self.report(diagnostic);
         let text = errors::first_token(value.as_str());
         let place = Span { end: place.start + text.len() as u32, ..place };
-        Some(is_word(text).then(|| Name { text: text.into(), span: place }))
+        Some(is_name(text).then(|| Name { text: text.into(), span: place }))
     }
 
     /// `radius`
@@ -435,7 +439,7 @@ impl<'t> Builder<'t> {
         let ExprKind::Name(kind) = &value.kind else { return false };
         let rest = self.after(pair.as_span().start()).trim_ascii_start();
         let word = errors::first_token(rest);
-        if !is_word(word) || !rest[word.len()..].trim_ascii_start().starts_with(':') || is_reserved(word) {
+        if !is_name(word) || !rest[word.len()..].trim_ascii_start().starts_with(':') {
             return false;
         }
         let start = self.base() + self.text_len() - rest.len();
@@ -448,10 +452,7 @@ impl<'t> Builder<'t> {
     pub(super) fn unread(&self) -> Entry {
         let mut words = self.after(0).split_ascii_whitespace();
         let _kind = words.next();
-        let name = words.next().filter(|word| {
-            let begins = word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
-            begins && word.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
-        });
+        let name = words.next().filter(|word| is_name(word));
         let name = name.map(|word| {
             let start = word.as_ptr().addr() - self.after(0).as_ptr().addr();
             Name { text: word.into(), span: self.at(start, start + word.len()) }
@@ -477,11 +478,6 @@ impl<'t> Builder<'t> {
             sign => self.report(errors::stray_separator(span, sign)),
         }
     }
-}
-
-/// Whether a text is one word.
-fn is_word(text: &str) -> bool {
-    !text.is_empty() && text.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
 }
 
 /// What an expression is made of, if that is one thing by this rule.

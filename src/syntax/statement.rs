@@ -4,7 +4,7 @@
 use super::ast::{Body, Broken, Entry, Expr, ExprKind, Name, Parameter, StatementKind, TypeName};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements as slips};
-use super::{BLANKS, RANGED_WORDS, TYPE_WORDS, branches, literal, mistyped, value};
+use super::{BLANKS, RANGED_WORDS, TYPE_WORDS, branches, is_name, leading, literal, value};
 use crate::span::Span;
 use pest::iterators::Pairs;
 use smol_str::SmolStr;
@@ -252,7 +252,6 @@ fn unnamed<'a>(builder: &Builder<'a>, path: &'a str, end: usize) -> &'a str {
     let line = rest.split('\n').next().unwrap_or("");
     let start = end + line.len() - line.trim_start_matches(BLANKS).len();
     let words: Vec<&str> = line.split_ascii_whitespace().collect();
-    let is_name = |word: &str| super::is_word(word) && !is_reserved(word);
     let (name, edit, place) = match words[..] {
         [] => (stem(path), stem(path).map(|name| format!(" as {name}")), builder.at(end, end)),
         [name] if is_name(name) => (Some(name), Some(" as".into()), builder.at(end, end)),
@@ -274,10 +273,7 @@ fn unquoted<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -
         builder.report(slips::bare_path(path, place));
     }
     let named = parts.find(|part| part.as_rule() == Rule::word).map(|name| declared(builder, Some(name)));
-    let name = named.or_else(|| {
-        let word = path.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') && !is_reserved(path);
-        word.then(|| Name { text: SmolStr::new(path), span: place })
-    });
+    let name = named.or_else(|| is_name(path).then(|| Name { text: SmolStr::new(path), span: place }));
     Entry::Broken(Broken { name, span })
 }
 
@@ -285,10 +281,7 @@ fn unquoted<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -
 fn stem(path: &str) -> Option<&str> {
     let file = path.rsplit('/').next()?;
     let stem = file.strip_suffix(".rt")?;
-    let is_name = stem.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
-        && stem.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
-        && !is_reserved(stem);
-    is_name.then_some(stem)
+    is_name(stem).then_some(stem)
 }
 
 // --- Functions ---------------------------------------------------------------------------------------------
@@ -315,7 +308,8 @@ fn function<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Span) -> De
     match parts.next_if(|part| part.as_rule() == Rule::arrow) {
         Some(arrow) => {
             let sign = arrow.as_str().trim_ascii_end();
-            if sign != "->" {
+            // Without its parameters, what the sign stands before may be one of them.
+            if sign != "->" && place != name.span {
                 let touches = !builder.all_before(arrow.as_span().start()).ends_with(super::BLANKS);
                 builder.report(slips::wrong_arrow(sign, builder.trimmed(&arrow), touches));
             }
@@ -324,7 +318,7 @@ fn function<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Span) -> De
         None if complete => {
             complete = false;
             let behind = builder.after(place.range().end - builder.base()).trim_ascii_start();
-            let typed = TYPE_WORDS.contains(&mistyped::leading(behind));
+            let typed = TYPE_WORDS.contains(&leading(behind, ""));
             builder.report(match typed {
                 true => slips::missing_arrow(place.after()),
                 false => slips::missing_type("the result", place.after(), "fn"),
@@ -404,10 +398,8 @@ fn parameters(builder: &Builder, pair: Node) -> Vec<Parameter> {
 /// `int count`: the name that stands behind a type in place of before it.
 fn type_first(ty: &Name, behind: &str, place: Span) -> Option<Name> {
     let word = behind.trim_ascii();
-    let is_name = word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
-        && word.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
     let start = place.end - word.len() as u32;
-    let swapped = is_name && TYPE_WORDS.contains(&ty.text.as_str()) && !TYPE_WORDS.contains(&word);
+    let swapped = is_name(word) && TYPE_WORDS.contains(&ty.text.as_str()) && !TYPE_WORDS.contains(&word);
     swapped.then(|| Name { text: SmolStr::new(word), span: Span { start, ..place } })
 }
 

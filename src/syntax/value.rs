@@ -153,7 +153,10 @@ fn infix(builder: &Builder, left: Deep<Expr>, operator: &Node, right: Deep<Expr>
             builder.report(errors::power_of_unit(sign, &unit.text, *value, at, edit));
             return invalid(span);
         }
-        builder.report(errors::operator_for_function(sign, function, at, left.span, right.span));
+        let slip = errors::operator_for_function(sign, function, at, left.span, right.span);
+        // A power is one of numbers, and whether a name is that of one is not known here.
+        let certain = rule != Rule::foreign_power || is_number(&left) && is_number(&right);
+        builder.report(if certain { slip } else { slip.ask(format!("write `{function}(a, b)`")) });
         return invalid(span);
     }
     if operator.as_str() == "|" {
@@ -190,6 +193,21 @@ fn is_placement(value: &Expr) -> bool {
         }
         ExprKind::Binary { operator, .. } => *operator == BinaryOp::Pipe,
         ExprKind::Paren(inner) => is_placement(inner),
+        _ => false,
+    }
+}
+
+/// Whether a value is seen to be a number without a unit.
+fn is_number(value: &Expr) -> bool {
+    use BinaryOp::*;
+    match &value.kind {
+        ExprKind::Number { .. } => true,
+        ExprKind::Paren(inner) | ExprKind::Unary { operator: UnaryOp::Negate, operand: inner } => {
+            is_number(inner)
+        }
+        ExprKind::Binary { operator: Add | Subtract | Multiply | Divide, left, right, .. } => {
+            is_number(left) && is_number(right)
+        }
         _ => false,
     }
 }
@@ -242,7 +260,7 @@ fn primary(builder: &Builder, pair: Node) -> Deep<Expr> {
         Rule::angled => angled::triple(builder, pair),
         Rule::angled_color => angled::color(builder, pair, None),
         Rule::malformed => {
-            builder.report(errors::bad_number(pair.as_str(), span));
+            builder.report(super::literal::bad_number(builder, pair.as_str(), span));
             invalid(span)
         }
         Rule::bare_body => {

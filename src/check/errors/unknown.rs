@@ -1,6 +1,7 @@
 //! What is said of names that nothing declares, by what is wanted where they stand.
 
 use super::{closest, quoted, unknown, unknown_name};
+use crate::check::functions::by_name;
 use crate::color;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::schema::{self, Category, FieldType, familiar};
@@ -115,6 +116,11 @@ fn unknown_color(name: &Name, candidates: &[&str]) -> Diagnostic {
     }
     if closest(text, candidates).is_some() || schema::kind(text).is_some() {
         return unknown(Code::E0101, "name", name, candidates);
+    }
+    if let Some(function) = by_name(text) {
+        return Diagnostic::new(Code::E0101, format!("`{text}` is a function"), name.span)
+            .at("what it is given is missing")
+            .help(format!("call it: `{}`", function.signature()));
     }
     let known: Vec<&str> = color::NAMED.iter().map(|(name, _)| *name).collect();
     Diagnostic::new(Code::E0101, format!("unknown colour `{text}`"), name.span)

@@ -5,6 +5,7 @@ use super::{shown, unexpected};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::span::Span;
 use crate::syntax::ast::Name;
+use crate::syntax::{is_name, is_word};
 use crate::units;
 
 /// What begins a statement elsewhere, and how that is written here.
@@ -89,7 +90,7 @@ pub(in crate::syntax) fn no_name(kind: &str, name: &str, span: Span) -> Diagnost
         return diagnostic
             .at("begins with a digit")
             .help(format!("a name begins with a letter: `{better}`"))
-            .fix(span, better);
+            .offer(format!("replace it with `{better}`"), vec![(span, better)]);
     }
     let better = name.replace('-', "_");
     // The same stands where it is used.
@@ -99,12 +100,23 @@ pub(in crate::syntax) fn no_name(kind: &str, name: &str, span: Span) -> Diagnost
         .offer(format!("replace it with `{better}`"), vec![(span, better)])
 }
 
-/// `sphere "ball" { … }`; the name, where the text can be one.
-pub(in crate::syntax) fn quoted_name(name: Option<&Name>, span: Span) -> Diagnostic {
+/// `sphere my ball { … }`
+pub(in crate::syntax) fn name_of_words(name: &str, better: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, format!("`{name}` cannot be a name"), span)
+        .at("more than one word")
+        .help(format!("join the words by `_`: `{better}`"))
+        .offer(format!("replace it with `{better}`"), vec![(span, better.to_string())])
+}
+
+/// `sphere "ball" { … }`, of which the text is given.
+pub(in crate::syntax) fn quoted_name(text: &str, span: Span) -> Diagnostic {
     let diagnostic = Diagnostic::new(Code::E0001, "the name of a thing has no quotes", span).at("a text");
-    match name {
-        Some(name) => diagnostic.help(format!("write `{}`", name.text)).fix(span, name.text.as_str()),
-        None => diagnostic.help("a name is one word, of letters, digits and `_`"),
+    if is_name(text) {
+        diagnostic.help(format!("write `{text}`")).fix(span, text)
+    } else if is_word(text) {
+        diagnostic.help(format!("`{text}` is a word of the language: choose another name"))
+    } else {
+        diagnostic.help("a name is one word, of letters, digits and `_`, and begins with no digit")
     }
 }
 
@@ -147,10 +159,11 @@ pub(in crate::syntax) fn angled_color(
 pub(super) const BARE_COMPONENTS: &str = "several values stand here without parentheses";
 
 /// `at: 0,1,0`
-pub(in crate::syntax) fn bare_components(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0001, BARE_COMPONENTS, span)
-        .at("more than one value")
-        .help("write `(x, y, z)`, with the unit behind it: `(0, 1, 0)m`")
+pub(in crate::syntax) fn bare_components(span: Span, count: usize) -> Diagnostic {
+    Diagnostic::new(Code::E0001, BARE_COMPONENTS, span).at("more than one value").help(match count {
+        2 => "write `(width, height)`, such as `(640, 480)`",
+        _ => "write `(x, y, z)`, with the unit behind it: `(0, 1, 0)m`",
+    })
 }
 
 /// `radius: 1,5m`

@@ -174,6 +174,18 @@ pub(in crate::syntax) fn missing_in(sign: &str, span: Span) -> Diagnostic {
     unexpected(sign, span).at("`in` is wanted").help(format!("write `{}`", form("for"))).fix(span, "in")
 }
 
+/// `for each i in list`; `span` is up to the second word.
+pub(in crate::syntax) fn named_twice(word: &str, name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::E0001,
+        format!("unexpected `{word}`"),
+        Span { end: span.start + word.len() as u32, ..span },
+    )
+    .at("one name belongs between `for` and `in`")
+    .help(format!("write `for {name} in list {{ … }}`"))
+    .fix(span, "")
+}
+
 /// `for i in x: {`
 pub(in crate::syntax) fn before_block(token: &str, span: Span) -> Diagnostic {
     unexpected(token, span).at("the body should begin here").help("leave it out: `{` follows at once")
@@ -326,6 +338,25 @@ pub(in crate::syntax) fn missing_comma(place: Span) -> Diagnostic {
 /// `@` alone.
 pub(in crate::syntax) fn missing_mark(span: Span) -> Diagnostic {
     unexpected("@", span).at("a word belongs behind this").help("there are `@off`, `@solo` and `@allow(…)`")
+}
+
+/// `@allow W0106 "why"`; `place` is that of what belongs into parentheses.
+pub(in crate::syntax) fn bare_arguments(code: &str, reason: &str, mark: Span, place: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, "what `@allow` takes stands in parentheses", place)
+        .at("a warning, and the reason")
+        .help(format!("write `@allow({code}, \"why\")`"))
+        .fix(Span { start: mark.end, ..place }, format!("({code}, {reason})"))
+}
+
+/// `length r = 1m`
+pub(in crate::syntax) fn type_before_name(ty: &Name, name: &Name) -> Diagnostic {
+    let (word, declared, span) = (&ty.text, &name.text, ty.span.to(name.span));
+    Diagnostic::new(Code::E0001, format!("`{declared}` is not declared by its type"), ty.span)
+        .at("a type")
+        .label(name.span, "what is declared")
+        .help(format!("write `let {declared} = …`, or `param {declared}: {word} = …` for a setting"))
+        .offer(format!("write `let {declared}`"), vec![(span, format!("let {declared}"))])
+        .offer(format!("write `param {declared}: {word}`"), vec![(span, format!("param {declared}: {word}"))])
 }
 
 /// `@off` before nothing; `written` is the mark with what is in its parentheses.

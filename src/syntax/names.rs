@@ -1,0 +1,57 @@
+//! What stands as the name of a thing and cannot be one.
+
+use super::ast::{Broken, Entry, Name};
+use super::build::Builder;
+use super::errors;
+use super::{BLANKS, PLACED_WORDS, is_name};
+use crate::diagnostic::Diagnostic;
+
+impl Builder<'_> {
+    /// `sphere "ball" { … }`, `sphere 2nd { … }`, `sphere my-ball { … }`: what stands as the name of a thing and cannot
+    /// be one, and the name that is in it.
+    pub(super) fn no_name(&self, kind: &str, start: usize) -> Option<(Diagnostic, Option<Name>)> {
+        let text = self.after(start);
+        if let Some(quoted) = text.strip_prefix('"') {
+            let mut escaped = false;
+            let end = quoted.find(|c| {
+                let ends = c == '\n' || c == '"' && !escaped;
+                escaped = c == '\\' && !escaped;
+                ends
+            })?;
+            let (inside, behind) = quoted.split_at(end);
+            let thing = behind.strip_prefix('"')?.trim_start_matches(BLANKS).starts_with('{');
+            let name = Name { text: inside.into(), span: self.at(start + 1, start + 1 + end) };
+            let name = Some(name).filter(|_| is_name(inside));
+            let whole = self.at(start, start + end + 2);
+            return thing.then(|| (errors::quoted_name(inside, whole), name));
+        }
+        let is_sign = |c: char| !c.is_ascii() && !c.is_alphanumeric() && !c.is_whitespace();
+        let is_part = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-') || is_sign(c);
+        let end = text.find(|c| !is_part(c)).unwrap_or(text.len());
+        let name = &text[..end];
+        let thing = text[end..].trim_start_matches(BLANKS).starts_with('{');
+        if thing && name.contains(is_sign) {
+            return Some((errors::signs_in_name(name, self.at(start, start + end)), None));
+        }
+        let apart = name.starts_with(|c: char| c.is_ascii_digit()) || name.contains('-');
+        let sound = apart && !name.starts_with('-') && !name.ends_with('-');
+        (thing && sound).then(|| (errors::no_name(kind, name, self.at(start, start + end)), None))
+    }
+
+    /// `sphere my ball { … }`: a name of several words, in a body that holds things.
+    pub(super) fn name_of_words(&self, kind: &Name, start: usize, top: bool) -> Option<Entry> {
+        let holds_things = top || self.declares.get() || self.grouped.get();
+        let text = self.after(start);
+        let (name, _) = text.split_once('{').filter(|_| holds_things)?;
+        let name = name.trim_end_matches(BLANKS);
+        let words: Vec<&str> = name.split(BLANKS).filter(|word| !word.is_empty()).collect();
+        let named = words.len() > 1 && words.iter().all(|word| is_name(word));
+        if !named || !is_name(&kind.text) || PLACED_WORDS.contains(&kind.text.as_str()) {
+            return None;
+        }
+        let place = self.at(start, start + name.len());
+        self.report(errors::name_of_words(name, &words.join("_"), place));
+        // It reaches to the body, which is that of no other thing.
+        Some(Entry::Broken(Broken { name: None, span: kind.span.to(place) }))
+    }
+}
