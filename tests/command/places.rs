@@ -239,6 +239,10 @@ fn a_damaged_record_is_no_reason_to_stop_a_film() {
         ],
     );
     film(&desk, "-o f{}.png").expect(0, &["frame 1 of 3 is done"]);
+    // Work that is not kept is told to whoever asks for nothing but errors too.
+    let quiet = film(&desk, "-o f{}.png -q");
+    quiet.expect(0, &["the frame is made; asked for again"]);
+    assert!(quiet.stderr.starts_with("warning: ") && !quiet.stderr.contains("done"), "{}", quiet.stderr);
 }
 
 #[test]
