@@ -239,7 +239,7 @@ pub struct Build {
     #[allow(missing_docs)]
     pub messages: Messages,
 
-    /// Says nothing but errors, and that samples cannot be kept.
+    /// Says nothing but errors, and that work cannot be kept.
     #[arg(short, long)]
     pub quiet: bool,
 }

@@ -1,7 +1,7 @@
 //! `rtc build`: scenes to pictures.
 
 use super::animate::{self, has_number};
-use super::args::{Build, Keeping};
+use super::args::Build;
 use super::denoise::{self, Clear, Denoised};
 use super::input::is_standard;
 use super::interrupt::Interrupt;
@@ -56,17 +56,6 @@ impl<'a> Context<'a> {
         let threads = ThreadPoolBuilder::new().num_threads(arguments.taking.threads.unwrap_or(0)).build();
         let threads = threads.map_err(|error| Problem::new(format!("cannot start the threads: {error}")))?;
         interrupt.heed_requests();
-        if !arguments.keeping.keeps() {
-            let Keeping { wait, checkpoint_every, .. } = &arguments.keeping;
-            let told = [
-                (wait.is_some(), "`--wait` is for work that is kept: else nobody is in the way"),
-                (checkpoint_every.is_some(), "`--checkpoint-every` is for work that is kept, and none is"),
-            ];
-            if let Some((_, why)) = told.into_iter().find(|(is_given, _)| *is_given) {
-                let help = "keep it with `--checkpoint` or `--resume`, or leave the flag out";
-                return Err(Problem::new(why).help(help));
-            }
-        }
         Ok(Context { arguments, threads, terminal, interrupt })
     }
 
@@ -110,6 +99,7 @@ pub fn run(arguments: &Build, terminal: Terminal, interrupt: &Interrupt) -> Resu
 fn plan(arguments: &Build) -> Result<Vec<Job>, Problem> {
     let scenes = &arguments.scenes;
     keep::refuse_loose_files(arguments)?;
+    keep::refuse_idle(&arguments.keeping)?;
     if let Some(twice) = first_repeated(scenes) {
         return Err(Problem::new(format!("the scene `{}` is given twice", twice.display())));
     }

@@ -111,6 +111,22 @@ pub fn refuse_loose_files(arguments: &Build) -> Result<(), Problem> {
     Err(problem.help(format!("a file stands behind `=`, without a space: `{flag}={file}`")))
 }
 
+/// What is said of how to keep must find something that is kept.
+pub fn refuse_idle(keeping: &Keeping) -> Result<(), Problem> {
+    let Keeping { wait, checkpoint_every, .. } = keeping;
+    let told = [
+        (wait.is_some(), "`--wait` is for work that is kept: else nobody is in the way"),
+        (checkpoint_every.is_some(), "`--checkpoint-every` is for work that is kept, and none is"),
+    ];
+    match told.into_iter().find(|(is_given, _)| *is_given) {
+        Some((_, why)) if !keeping.keeps() => {
+            let help = "keep it with `--checkpoint` or `--resume`, or leave the flag out";
+            Err(Problem::new(why).help(help))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// The places that flags name, for a picture that goes to these targets; none where nothing is to be kept.
 pub fn places(arguments: &Keeping, targets: &[Target]) -> Result<Option<Places>, Problem> {
     if !arguments.keeps() {

@@ -31,7 +31,11 @@ pub fn run(arguments: &Merge, terminal: Terminal, interrupt: &Interrupt) -> Resu
                 build::refuse_misfits(&targets, picture.size, picture.alpha.is_some())?;
                 merging = Some(first);
             }
-            Err(problem) if arguments.partial => terminal.warning(&problem.help("it is left out")),
+            Err(problem) if arguments.partial => {
+                if !arguments.quiet {
+                    terminal.warning(&problem.help("it is left out"));
+                }
+            }
             Err(problem) => return Err(problem),
         }
     }

@@ -4,7 +4,7 @@ use super::{Desk, assert_same};
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A scene in which paths take a while.
 const ROOM: &str = "
@@ -78,6 +78,8 @@ fn shares_put_together_are_the_picture_of_one_machine() {
         0,
         &["warning: `foreign.exr` does not go with", "it is left out", "7 samples", "of 2 shares"],
     );
+    let quiet = desk.run("merge --partial foreign.exr part1.exr part3.exr -o look.png -q");
+    assert_eq!((quiet.code, quiet.stderr.as_str()), (Some(0), ""));
     desk.run("merge --partial foreign.exr part1.exr -o no.exr")
         .expect(2, &["`foreign.exr` and `part1.exr` are shares of different pictures"]);
     // Given again and again it is one share.
@@ -366,12 +368,10 @@ fn nothing_but_a_checkpoint_is_replaced_by_one() {
 fn samples_that_cannot_be_kept_are_a_warning() {
     let desk = desk();
     fs::create_dir(desk.path("store")).unwrap();
-    let flags = "--size 48x36 --time 2s -o a.png --checkpoint=store/kept --checkpoint-every 1spp";
+    // So slow that the folder is gone before the last of them are to be kept.
+    let flags = "--size 48x36 --samples 1000 -j 1 -o a.png --checkpoint=store/kept --checkpoint-every 1spp";
     let mut child = desk.command(&format!("build room.rt {flags}")).stderr(Stdio::piped()).spawn().unwrap();
-    while !desk.path("store/kept").exists() {
-        assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    desk.wait_for("store/kept", &mut child);
     fs::rename(desk.path("store"), desk.path("elsewhere")).unwrap();
     let ended = super::ended(child.wait_with_output().unwrap());
     ended.expect(0, &["warning: cannot write `store/kept`: there is no folder", "the picture goes on"]);
@@ -501,16 +501,15 @@ fn a_pipe_beside_a_picture_is_not_waited_for() {
 #[test]
 fn killed_at_any_moment_it_goes_on_and_the_bytes_are_the_same() {
     let desk = desk();
-    let arguments =
-        "build room.rt --size 200x150 --samples 100 -o a.exr --checkpoint --checkpoint-every 1spp";
-    for moment in [20, 400, 700, 900] {
-        let mut child = desk.command(arguments).stderr(Stdio::null()).spawn().unwrap();
-        std::thread::sleep(Duration::from_millis(moment));
-        child.kill().unwrap();
-        child.wait().unwrap();
-    }
-    desk.run(arguments).expect(0, &["100 samples"]);
-    desk.run("build room.rt --size 200x150 --samples 100 -o b.exr").expect(0, &[]);
+    let picture = "build room.rt --size 200x150 --samples 100";
+    let arguments = format!("{picture} -o a.exr --checkpoint --checkpoint-every 1spp");
+    // With one thread it takes a while on any machine.
+    let in_time = [0, 5, 20, 100].map(|delay| {
+        desk.kill_after(&format!("{arguments} -j 1"), "a.exr.checkpoint", Duration::from_millis(delay))
+    });
+    assert!(in_time[0] && in_time[1], "{in_time:?}");
+    desk.run(&arguments).expect(0, &["100 samples", "went on from"]);
+    desk.run(&format!("{picture} -o b.exr")).expect(0, &[]);
     assert_same(&desk.path("a.exr"), &desk.path("b.exr"));
 }
 
@@ -518,32 +517,39 @@ fn killed_at_any_moment_it_goes_on_and_the_bytes_are_the_same() {
 #[test]
 fn signals_write_a_checkpoint() {
     let desk = desk();
+    let [store, elsewhere] = ["store", "elsewhere"].map(|name| desk.path(name));
     for signal in ["INT", "TERM"] {
-        let arguments = "build room.rt --size 48x36 --samples 1000000 -o a.png --checkpoint=kept";
+        fs::create_dir(&store).unwrap();
+        let arguments = "build room.rt --size 48x36 --samples 1000000 -o a.png --checkpoint=store/kept";
         let mut child = desk.command(arguments).stderr(Stdio::piped()).spawn().unwrap();
         // Its ears are open before that.
-        desk.wait_for(".rtc-kept.lock.tmp", &mut child);
-        assert!(!desk.names().contains(&"kept".to_string()), "it is not time yet");
+        desk.wait_for("store/.rtc-kept.lock.tmp", &mut child);
+        assert!(!desk.path("store/kept").exists(), "it is not time yet");
         send("USR1", &child);
-        let start = Instant::now();
-        while !desk.names().contains(&"kept".to_string()) {
-            assert!(child.try_wait().unwrap().is_none(), "it ended by SIGUSR1");
-            assert!(start.elapsed() < Duration::from_secs(30), "SIGUSR1 wrote no checkpoint");
-            std::thread::sleep(Duration::from_millis(5));
-        }
-        let before = desk.get("kept");
-        std::thread::sleep(Duration::from_millis(800));
+        desk.wait_for("store/kept", &mut child);
+        let before = desk.get("store/kept");
+        // More samples, which cannot be kept until it is asked to end.
+        fs::rename(&store, &elsewhere).unwrap();
+        send("USR1", &child);
+        let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
+        assert!(lines.any(|line| line.contains("cannot write `store/kept`")), "it ended");
+        fs::rename(&elsewhere, &store).unwrap();
         send(signal, &child);
-        super::ended(child.wait_with_output().unwrap())
-            .expect(130, &["interrupted; kept ", " samples", " in `kept`"]);
-        assert_ne!(desk.get("kept"), before, "SIG{signal} wrote no checkpoint");
+        let said: Vec<String> = lines.collect();
+        assert_eq!(child.wait().unwrap().code(), Some(130), "{said:?}");
+        let last = said.last().unwrap();
+        assert!(
+            last.starts_with("interrupted; kept ") && last.ends_with(" samples in `store/kept`"),
+            "{last}"
+        );
+        assert_ne!(desk.get("store/kept"), before, "SIG{signal} wrote no checkpoint");
         // There are more already.
-        desk.run("build room.rt --size 48x36 --samples 1 -o a.png --resume=kept")
+        desk.run("build room.rt --size 48x36 --samples 1 -o a.png --resume=store/kept")
             .expect(2, &["samples a pixel already, and no more than 1 are asked for", "`rtc develop`"]);
-        desk.run("develop kept -o a.png").expect(0, &[]);
-        for name in ["kept", "a.png"] {
-            fs::remove_file(desk.path(name)).unwrap();
-        }
+        desk.run("develop store/kept -o a.png").expect(0, &[]);
+        fs::remove_file(desk.path("store/kept")).unwrap();
+        fs::remove_dir(&store).unwrap();
+        fs::remove_file(desk.path("a.png")).unwrap();
         assert_eq!(desk.names(), ["ball.rt", "room.rt"]);
     }
 }

@@ -82,6 +82,19 @@ impl Desk {
         }
     }
 
+    /// Runs the command, and kills it so long after it has written this file anew. Whether it was not done by then.
+    pub fn kill_after(&self, arguments: &str, file: &str, delay: Duration) -> bool {
+        let written = || fs::read(self.path(file)).ok();
+        let before = written();
+        let mut child = self.command(arguments).stderr(Stdio::null()).spawn().unwrap();
+        while written() == before && child.try_wait().unwrap().is_none() {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        std::thread::sleep(delay);
+        child.kill().unwrap();
+        !child.wait().unwrap().success()
+    }
+
     /// Runs with a file on standard input.
     pub fn feed(&self, arguments: &str, file: &str) -> Ended {
         let stdin = fs::File::open(self.path(file)).unwrap();

@@ -96,11 +96,10 @@ fn nothing_is_written_but_what_flags_name() {
 #[cfg(unix)]
 mod on_unix {
     use super::super::{Desk, Ended, ended};
-    use super::{build, film, fs};
+    use super::{BufRead, BufReader, build, film, fs};
     use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
     use std::os::unix::process::CommandExt;
     use std::process::{Child, Stdio};
-    use std::time::Duration;
 
     /// As somebody who may not write everything, if this is one who may.
     fn as_anybody(desk: &Desk, arguments: &str) -> Ended {
@@ -196,14 +195,16 @@ mod on_unix {
         let quiet = build(&desk, "-o a.png --resume --wait 600ms");
         quiet.expect(2, &["another process"]);
         assert!(!quiet.stderr.contains("it is waited for"), "{}", quiet.stderr);
-        let second = desk
-            .command("build ball.rt --size 400x300 --samples 1 -o a.png --resume --wait 1min")
+        let mut second = desk
+            .command("build ball.rt --size 400x300 --samples 1 -o a.png --resume --wait 10min")
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
-        std::thread::sleep(Duration::from_millis(700));
+        let mut lines = BufReader::new(second.stderr.take().unwrap()).lines().map_while(Result::ok);
+        assert!(lines.any(|line| line.contains("it is waited for")), "it ended");
         kill(first);
-        ended(second.wait_with_output().unwrap()).expect(0, &["it is waited for", "400×300"]);
+        assert!(lines.any(|line| line.contains("400×300")), "it ended");
+        assert!(second.wait().unwrap().success());
     }
 
     #[test]
@@ -238,6 +239,10 @@ fn a_damaged_record_is_no_reason_to_stop_a_film() {
         ],
     );
     film(&desk, "-o f{}.png").expect(0, &["frame 1 of 3 is done"]);
+    // Work that is not kept is told to whoever asks for nothing but errors too.
+    let quiet = film(&desk, "-o f{}.png -q");
+    quiet.expect(0, &["the frame is made; asked for again"]);
+    assert!(quiet.stderr.starts_with("warning: ") && !quiet.stderr.contains("done"), "{}", quiet.stderr);
 }
 
 #[test]

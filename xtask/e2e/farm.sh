@@ -3,7 +3,9 @@
 # worker is killed midway, one task put back into the queue, one cancelled and asked for again, one ended by its time; and the picture
 # has the same bytes as one process with one thread makes alone. And a film in three runs of frames.
 # Usage: farm.sh RTC ROOT, in an empty folder. Needs munged, slurmctld, slurmd and sbatch, and root, as which they run.
-set -euo pipefail
+# Whatever fails, in functions and `$(…)` too, ends all of it, and is named by the trap below.
+set -Eeuo pipefail
+shopt -s inherit_errexit
 export PATH=$PATH:/usr/sbin
 rtc=$1
 root=$2
@@ -17,8 +19,8 @@ pids=()
 # What failed is said last, below the logs.
 why=
 trap 'why="line $LINENO: $BASH_COMMAND"' ERR
-fail() {
-  why=$1
+fail() { # WHY: said in a file, as a part of the script may be its own process.
+  echo "$1" >"$state/why"
   exit 1
 }
 
@@ -34,6 +36,7 @@ finish() {
   for pid in "${pids[@]}"; do kill -9 "$pid" 2>/dev/null; done
   if [ "$code" != 0 ]; then
     tail -n 20 "$state"/*.log "$desk"/*.log 2>/dev/null
+    [ -s "$state/why" ] && why=$(cat "$state/why")
     echo "failed: $why"
   fi
   rm -rf "$state"
@@ -105,7 +108,7 @@ idle() { [ "$(sinfo --noheader --format=%D --states=idle)" = 5 ]; }
 wait_for 60 "five idle workers" idle
 
 scene=$root/examples/three-balls.rt
-flags=(--size 160x120 --samples 1200)
+flags=(--size 160x120 --samples 2400)
 export RTC=$rtc
 export PATH=$(dirname "$rtc"):$PATH
 mkdir farm
@@ -123,7 +126,7 @@ recipe() {
   local line
   line=$(grep -F "$1" "$scripts/README.md" | grep '^sbatch')
   [ "$(wc -l <<<"$line")" = 1 ] || fail "not one line of the README has \`$1\`"
-  sed -e 's/1-64/1-4/; s/array=17/array=4/; s/room.rt 64/room.rt 4/; s/--samples 4096/--samples 1200 --size 160x120 --checkpoint-every 16spp/' \
+  sed -e 's/1-64/1-4/; s/array=17/array=4/; s/room.rt 64/room.rt 4/; s/--samples 4096/--samples 2400 --size 160x120 --checkpoint-every 16spp/' \
     -e 's/1-16/1-3/; s/480 16 frames/7 3 frames/; s/--frames 480/--frames 7/; s/--samples 256/--samples 8 --size 80x60/g' <<<"$line"
 }
 submit() { # WORDS: runs the line in the folder, and prints the number of the job that comes last.
@@ -160,7 +163,13 @@ thaw() {
   sleep 1
   kill -CONT "$1" 2>/dev/null || true
 }
-for share in 2 3 4; do freeze "$share"; done
+# Each as soon as it can be: who waits for one does not see another end.
+freezing=()
+for share in 2 3 4; do
+  freeze "$share" &
+  freezing+=($!)
+done
+for one in "${freezing[@]}"; do wait "$one"; done
 
 # One worker is lost in the middle of its share: its daemon, the step's, and what runs under it.
 worker=$(squeue --noheader --format=%N --job="${array}_2")

@@ -257,9 +257,11 @@ fn run(command: &mut Command) -> Outcome {
         }
     });
     let status = child.wait().map_err(broken)?;
-    // What it has left behind may hold the pipe open for ever, and says nothing that is waited for.
+    // What it has left behind may hold the pipe open for ever, and says nothing that is waited for, however much that is.
+    let deadline = Instant::now() + Duration::from_secs(1);
+    let next = || lines.recv_timeout(deadline.checked_duration_since(Instant::now())?).ok();
     let mut last = VecDeque::new();
-    while let Ok(line) = lines.recv_timeout(Duration::from_secs(1)) {
+    while let Some(line) = next() {
         last.push_back(line);
         if last.len() > LAST_LINES {
             last.pop_front();

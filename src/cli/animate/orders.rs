@@ -39,6 +39,7 @@ impl Orders {
     /// Reads the flags of a build that has frames.
     pub fn new(arguments: &Build) -> Result<Orders, Problem> {
         keep::refuse_loose_files(arguments)?;
+        keep::refuse_idle(&arguments.keeping)?;
         let [scene] = arguments.scenes.as_slice() else {
             let problem =
                 Problem::new(format!("a film is of one scene, and here are {}", arguments.scenes.len()));

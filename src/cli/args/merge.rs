@@ -24,7 +24,8 @@ pub struct Merge {
     #[arg(short, long = "output", value_name = "OUT", required = true)]
     pub outputs: Vec<PathBuf>,
 
-    /// Makes a picture of the shares that are there, and tells which are missing. Shares that are not whole are left out.
+    /// Makes a picture of the shares that are there, and tells which are missing, and which are left out as they are not
+    /// whole or of another picture.
     #[arg(long)]
     pub partial: bool,
 
@@ -32,7 +33,7 @@ pub struct Merge {
     #[arg(long, value_name = "8|16", default_value = "8", value_parser = depths())]
     pub bits: Depth,
 
-    /// Says nothing but errors.
+    /// Says nothing but errors, and so nothing of what `--partial` does without.
     #[arg(short, long)]
     pub quiet: bool,
 }
