@@ -42,6 +42,13 @@ fn a_place_within_a_character_is_the_one_before() {
     assert_eq!([0, 1, 2, 3, 4, 9].map(|n| byte(n, Encoding::Utf16)), [0, 1, 1, 5, 6, 6]);
     assert_eq!([0, 1, 2, 4, 5, 9].map(|n| byte(n, Encoding::Utf8)), [0, 1, 1, 1, 5, 6]);
     assert_eq!([0, 1, 2, 3, 9].map(|n| byte(n, Encoding::Utf32)), [0, 1, 5, 6, 6]);
+    for (encoding, torn) in [(Encoding::Utf8, 2..5), (Encoding::Utf16, 2..3), (Encoding::Utf32, 0..0)] {
+        for character in 0..12 {
+            let place = Place { line: 0, character };
+            assert_eq!(text.is_torn(place, encoding), torn.contains(&character), "{place:?} {encoding:?}");
+        }
+    }
+    assert!(!text.is_torn(Place { line: 2, character: 7 }, Encoding::Utf16));
     assert_eq!(text.place(7, Encoding::Utf16), Place { line: 0, character: 4 });
     assert_eq!(text.whole().len(), text.byte(Place { line: 7, character: 0 }, Encoding::Utf8));
 }

@@ -1,5 +1,6 @@
 //! What can stand where the cursor is.
 
+mod behind;
 mod entries;
 mod paths;
 mod values;
@@ -36,14 +37,18 @@ pub fn complete(
         Spot::Type => list.types(),
         Spot::Keyword(words) => words.iter().for_each(|word| list.word(word)),
         Spot::Branch => list.branch(),
+        Spot::Reason => {
+            list.push("\"…\"", CompletionKind::Word, Rank::Fits).insert = Insert::with_holes("\"‹why›\"");
+        }
         Spot::Path(language) => list.paths(files, source, *language),
-        Spot::Entry | Spot::Value(_) | Spot::Unit(_) | Spot::Member(_) => {
+        Spot::Entry | Spot::Value(_) | Spot::Unit(_) | Spot::Member(_) | Spot::Behind(..) => {
             let found = typing(files, source, &cursor, limits, stop, |typing| {
                 let mut list = List { cursor: typing.cursor, found: vec![] };
                 match &typing.cursor.spot {
                     Spot::Entry => list.entry(typing),
                     Spot::Value(field) => list.value(typing, field.as_deref()),
                     Spot::Unit(field) => list.units(typing, field.as_deref()),
+                    Spot::Behind(words, field) => list.behind(typing, words, field.as_deref()),
                     Spot::Member(dot) => list.members(typing, *dot),
                     _ => {}
                 }

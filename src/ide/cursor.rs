@@ -1,8 +1,7 @@
 //! Where the cursor stands in a text that is being typed: by its words and marks alone, since the rest may make no sense.
 
 use super::lex::{Lexeme, lex, split};
-use crate::check::Function;
-use crate::schema::{FieldType, KINDS, PLACED};
+use crate::schema::{FieldType, KINDS};
 use crate::syntax::NAMING_WORDS;
 use std::ops::Range;
 
@@ -46,6 +45,10 @@ pub(super) enum Spot {
     Path(bool),
     /// One of these words or marks of the language.
     Keyword(Vec<&'static str>),
+    /// What goes on behind a value: one of these words, or an operator. Of which field the value is, if of one.
+    Behind(Vec<&'static str>, Option<String>),
+    /// The text that says why something must hold.
+    Reason,
     /// What is done where a condition does not hold.
     Branch,
 }
@@ -182,9 +185,9 @@ impl<'t> Cursor<'t> {
             }
             let unfinished = || !self.begins_entry(&pieces[index + 1..]);
             let goes_on = entry.last().is_some_and(|last| self.goes_on(last)) && unfinished();
-            if depth == 0
-                && (self.is(piece, ",") || self.is(piece, ";") || piece.0 == Lexeme::Line && !goes_on)
-            {
+            // Behind a comma an assertion says why.
+            let parts = self.is(piece, ",") && !entry.first().is_some_and(|first| self.is(first, "assert"));
+            if depth == 0 && (parts || self.is(piece, ";") || piece.0 == Lexeme::Line && !goes_on) {
                 entry.clear();
             } else if piece.0 != Lexeme::Line {
                 entry.push(piece);
@@ -271,8 +274,8 @@ impl<'t> Cursor<'t> {
             [] => Spot::Entry,
             ["param", _, ":"] => Spot::Type,
             ["param", _, ":", ty @ ..] if ty.contains(&"=") && after_operand => {
-                let within = (!ty.contains(&"in")).then_some("in");
-                Spot::Keyword(within.into_iter().chain(self.behind_value()).collect())
+                let of_range = ["in", "to"].into_iter().find(|word| !ty.contains(word));
+                Spot::Behind(of_range.into_iter().chain(self.lacking()).collect(), None)
             }
             ["param", _, ":", ty @ ..] if ty.contains(&"=") => Spot::Value(None),
             ["param", _, ":", "["] => Spot::Type,
@@ -288,8 +291,10 @@ impl<'t> Cursor<'t> {
             ["if", .., "}", "else"] => Spot::Branch,
             ["if", .., "}"] if self.is_alternative() => Spot::Nothing,
             ["if", .., "}"] => Spot::Keyword(vec!["else"]),
+            ["assert", .., ","] => Spot::Reason,
+            ["assert", .., ",", text] if text.starts_with('"') => Spot::Nothing,
             ["for", _, "in", ..] | ["if" | "assert", ..] if after_operand => {
-                Spot::Keyword(self.behind_value())
+                Spot::Behind(self.lacking(), None)
             }
             ["for", _, "in", ..] | ["if" | "assert", ..] => Spot::Value(None),
             ["let" | "material" | "fn", _, ..] if begun.contains(&"=") && !after_operand => {
@@ -297,7 +302,7 @@ impl<'t> Cursor<'t> {
             }
             [_, ":", ..] if !after_operand => Spot::Value(field),
             [_, ":", ..] | ["let" | "material" | "fn", ..] if begun.len() > 2 && after_operand => {
-                Spot::Keyword(self.behind_value())
+                Spot::Behind(self.lacking(), field)
             }
             _ => Spot::Nothing,
         }
@@ -384,34 +389,43 @@ impl<'t> Cursor<'t> {
             // Inside a call another type is wanted than outside.
             true if is_name(opened_by) => Spot::Value(None),
             true => Spot::Value(field),
-            false => Spot::Keyword(self.behind_value()),
+            false if is_name(opened_by) => Spot::Behind(self.lacking(), None),
+            false => Spot::Behind(self.lacking(), field),
         }
     }
 
-    /// The words and marks that can stand behind a value: those that the innermost brackets lack, and operators.
-    fn behind_value(&self) -> Vec<&'static str> {
+    /// The words of a choice that the innermost brackets lack.
+    fn lacking(&self) -> Vec<&'static str> {
         let inner = self.open.last().filter(|open| self.text.as_bytes()[**open] != b'{');
         let inner = inner.map_or(0, |open| open + 1);
-        let begun: Vec<&str> = self
-            .entry
-            .iter()
-            .filter(|piece| piece.start >= inner)
-            .map(|piece| &self.text[piece.clone()])
-            .collect();
-        let count = |word: &str| begun.iter().filter(|piece| **piece == word).count();
+        let begun = || self.entry.iter().filter(|piece| piece.start >= inner);
+        let count = |word: &str| begun().filter(|piece| self.text[(*piece).clone()] == *word).count();
         // That of a statement has braces.
         let chooses = self.piece(0) == "if" && inner == 0;
         let (ifs, thens) = (count("if") - usize::from(chooses), count("then"));
-        let is_field = inner == 0 && self.piece(1) == ":";
-        let places = is_field
-            && PLACED.iter().any(|field| field.ty == FieldType::Transform && field.name == self.piece(0))
-            || begun
-                .iter()
-                .any(|piece| Function::ALL.iter().any(|known| known.name() == *piece && gives_place(known)));
-        let operators: &[&str] = if places { &["|>"] } else { &["and", "or", "to"] };
         let lacks = [("then", thens < ifs), ("else", count("else") < thens)];
-        let lacks = lacks.into_iter().filter(|(_, lacks)| *lacks).map(|(word, _)| word);
-        operators.iter().copied().chain(lacks).collect()
+        lacks.into_iter().filter(|(_, lacks)| *lacks).map(|(word, _)| word).collect()
+    }
+
+    /// The word or mark before the word at the cursor.
+    pub(super) fn last(&self) -> &'t str {
+        self.piece(self.entry.len().wrapping_sub(1))
+    }
+
+    /// Whether the word stands right behind `3W/`, where it may be the rest of a unit.
+    pub(super) fn divides_power(&self) -> bool {
+        let mut back = self.entry.iter().rev();
+        let (Some(slash), Some(number)) = (back.next(), back.next()) else { return false };
+        let number = (&self.text[number.clone()], number.end);
+        let touches = &self.text[slash.clone()] == "/" && slash.end == self.word.start;
+        touches && number.1 == slash.start && split(number.0).1 == "W"
+    }
+
+    /// Whether the word is the index of what stands before the innermost bracket.
+    pub(super) fn is_index(&self) -> bool {
+        let Some((open, by)) = self.open.last().zip(self.opened_by.clone()) else { return false };
+        let by = (by.end, &self.text[by]);
+        self.text.as_bytes()[*open] == b'[' && by.0 == *open && (is_name(by.1) || matches!(by.1, ")" | "]"))
     }
 
     /// Whether the braces that end the entry are those of `else`.
@@ -480,11 +494,6 @@ impl<'t> Cursor<'t> {
         }
         (!open.is_empty()).then_some(margin.unwrap_or(self.text.len()))
     }
-}
-
-/// Whether a function gives a placement.
-fn gives_place(function: &Function) -> bool {
-    function.ways().iter().any(|way| way.gives == "transform")
 }
 
 /// Whether this is the name of something that can be called.

@@ -3,7 +3,7 @@
 use super::lex::{Lexeme, lex};
 use super::signature::Inside;
 use super::typing::Typing;
-use crate::check::{Declared, Function, FunctionBody, TYPES, Type, texture_parameters};
+use crate::check::{Declared, Element, Function, FunctionBody, TYPES, Type, texture_parameters};
 use crate::schema::{Category, Field, FieldType};
 use crate::units;
 
@@ -46,6 +46,12 @@ impl Typing<'_> {
 
     /// What a value at the cursor must be: of the field, where it is that of one. None where it may be anything.
     pub(super) fn wanted_here(&self, field: Option<&str>) -> Option<Declared> {
+        if matches!(self.cursor.last(), "not" | "and" | "or" | "if") {
+            return Some(Declared::Field(FieldType::Bool));
+        }
+        if self.cursor.is_index() {
+            return Some(Declared::Field(FieldType::Int));
+        }
         if let Some(call) = self.call() {
             return call.wanted();
         }
@@ -53,11 +59,25 @@ impl Typing<'_> {
             (Some("material"), None) => Some(Declared::Field(FieldType::Made(Category::Material))),
             (Some(field), Some(kind)) => self.wanted(kind, field),
             (Some(_), None) => None,
-            (None, _) => self.wanted_by_statement(),
+            (None, _) => self.wanted_by_statement().or_else(|| self.wanted_by_tuple()),
         };
         match (&wanted, self.cursor.in_tuple()) {
             (Some(Declared::Field(ty)), Some(has_unit)) => component(*ty, has_unit).or(wanted),
             _ => wanted,
+        }
+    }
+
+    /// What a component of a triple is, by the first one.
+    fn wanted_by_tuple(&self) -> Option<Declared> {
+        let text = &self.analysis.source().text;
+        let open = *self.cursor.open.last().filter(|open| text.as_bytes()[**open] == b'(')?;
+        let comma =
+            self.cursor.entry.iter().find(|piece| piece.start > open && text[(*piece).clone()] == *",")?;
+        match self.type_before(text[..comma.start].trim_end().len()) {
+            // A zero is of any dimension.
+            Type::Scalar(Element::Zero) => None,
+            Type::Scalar(element) => Some(Declared::Field(FieldType::Scalar(element.dim()))),
+            _ => None,
         }
     }
 

@@ -274,7 +274,7 @@ fn kind(file: &[u8]) -> &'static str {
         [] => "empty",
         [0x89, b'P', b'N', b'G', ..] => "a PNG",
         [0xff, 0xd8, 0xff, ..] => "a JPEG",
-        [b'R', b'I', b'F', b'F', ..] => "a WebP",
+        [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => "a WebP",
         [b'#', b'?', ..] => "a Radiance HDR",
         [b'P', b'F', b'\n', ..] => "a PFM",
         _ if std::str::from_utf8(file).is_ok_and(|text| !text.contains('\0')) => "a text",

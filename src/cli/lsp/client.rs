@@ -25,6 +25,8 @@ pub struct Client {
     pub markdown_docs: bool,
     /// Understands Markdown in what is said of calls.
     pub markdown_calls: bool,
+    /// Takes it that no parameter of a call is the one being written.
+    pub marks_none: bool,
     /// Takes mends as edits, and not only as commands.
     pub mends: bool,
     /// Asks whether something can be renamed.
@@ -69,6 +71,7 @@ impl Client {
                 "textDocument/signatureHelp/signatureInformation/documentationFormat",
                 "markdown",
             ),
+            marks_none: can("textDocument/signatureHelp/signatureInformation/noActiveParameterSupport"),
             mends: at("textDocument/codeAction/codeActionLiteralSupport").is_some(),
             prepares: can("textDocument/rename/prepareSupport"),
             watches: can("workspace/didChangeWatchedFiles/dynamicRegistration"),

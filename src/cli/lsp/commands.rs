@@ -1,5 +1,6 @@
 //! What a person can have done with a document, while the server goes on.
 
+use super::analyst::Meaning;
 use super::documents::Key;
 use super::render;
 use super::requests::read;
@@ -70,6 +71,20 @@ pub fn wanted(params: Value) -> Answer<(String, About)> {
         }
     };
     Ok((command, about))
+}
+
+/// Refuses a camera that a document does not have. Of one with errors it is not known which it has.
+pub fn has(meaning: &Meaning, camera: &str) -> Answer<()> {
+    let is_there = |cameras: &[String]| cameras.iter().any(|known| known == camera);
+    let Some(cameras) = meaning.analysis.cameras().filter(|cameras| !is_there(cameras)) else {
+        return Ok(());
+    };
+    let there = match cameras {
+        [] => "none has a name".to_string(),
+        [name] => format!("there is `{name}`"),
+        names => format!("there are `{}`", names.join("`, `")),
+    };
+    Err(Failure::plain(format!("no camera is called `{camera}`: {there}")))
 }
 
 /// The pictures that are asked for. One thread makes them one after the other, since each takes all of the machine.

@@ -42,7 +42,7 @@ pub fn looked(looked: Looked, key: &Key, view: &View) -> (BTreeSet<Key>, Found) 
         Ok(meaning) => (meaning.reads.clone(), found(meaning, key, view)),
         Err((failure, reads)) => {
             let message = format!(
-                "{}\nhelp: report it with this text; nothing else is known of it until it is edited",
+                "{}\nhelp: report it with this text; nothing else is known of it until it, or what it imports, is edited",
                 failure.message
             );
             let own = Said { all: vec![plain(message)], ..Said::new(view, key) };

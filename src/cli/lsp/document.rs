@@ -61,6 +61,15 @@ impl Text {
             }
     }
 
+    /// Whether a place lies within a character.
+    pub fn is_torn(&self, place: Place, encoding: Encoding) -> bool {
+        let nearest = self.place(self.byte(place, encoding), encoding);
+        // One behind the end of its line, or of the text, is that end.
+        let is_behind =
+            self.byte(Place { character: u32::MAX, ..place }, encoding) == self.byte(place, encoding);
+        nearest != place && !is_behind
+    }
+
     /// The place of a byte; of one within a character or a line's end, the place before.
     pub fn place(&self, byte: usize, encoding: Encoding) -> Place {
         let byte = self.text.floor_char_boundary(byte.min(self.text.len()));

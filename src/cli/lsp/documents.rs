@@ -166,10 +166,12 @@ impl Document {
     }
 
     fn edit(&mut self, range: Range, with: &str, encoding: Encoding) {
-        let byte = |position: Position| self.text.byte(place(position), encoding);
-        let (start, end) = (byte(range.start), byte(range.end));
-        // One that is the wrong way round is the same range.
-        let range = start.min(end)..start.max(end);
+        let [from, to] = [range.start, range.end].map(place);
+        // Whoever tells of such a place counts otherwise, or has another text.
+        if to < from || [from, to].iter().any(|place| self.text.is_torn(*place, encoding)) {
+            return self.lose(Kept::Lost);
+        }
+        let range = self.text.byte(from, encoding)..self.text.byte(to, encoding);
         if self.text.whole().len() - range.len() + with.len() > MOST_TEXT {
             self.lose(Kept::TooLong);
         } else {
@@ -298,6 +300,22 @@ mod tests {
             assert_eq!(changed("ab", &[odd, json!({ "text": "c" })]), ("c".into(), Kept::Whole));
         }
         assert_eq!(changed("ab", &[put(0, "x"), put(7, "y")]), ("xaby".into(), Kept::Whole));
+        // The second place is before the first, or within a character; what is too far is as far as there is something.
+        let cut = |from: [u32; 2], to: [u32; 2]| {
+            let [from, to] =
+                [from, to].map(|[line, character]| json!({ "line": line, "character": character }));
+            changed("a😀\nb", &[json!({ "range": { "start": from, "end": to }, "text": "" })])
+        };
+        for (from, to) in
+            [([1, 0], [0, 1]), ([0, 1], [0, 0]), ([0, 9], [0, 8]), ([0, 2], [0, 3]), ([0, 0], [0, 2])]
+        {
+            assert_eq!(cut(from, to), (String::new(), Kept::Lost), "{from:?} {to:?}");
+        }
+        for (from, to, left) in
+            [([0, 1], [0, 9], "a\nb"), ([0, 3], [9, 9], "a😀"), ([7, 0], [7, 2], "a😀\nb")]
+        {
+            assert_eq!(cut(from, to), (left.into(), Kept::Whole), "{from:?} {to:?}");
+        }
     }
 
     #[test]

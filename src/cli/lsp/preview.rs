@@ -3,7 +3,7 @@
 
 use super::analyst::Meaning;
 use super::buffer::{Asked as AskedToChange, Buffer};
-use super::commands::{About, Order};
+use super::commands::{About, Order, has};
 use super::documents::{Kept, Key, place};
 use super::requests::read;
 use super::uri::uri_of;
@@ -151,17 +151,10 @@ fn has_camera(asked: &mut Asked, params: Value) -> Answer<Value> {
         Some(meaning) => meaning.ok(),
         None => Meaning::find(asked.view, &key, &|| asked.is_cancelled()).map(Arc::new),
     };
-    // Of a text with errors it is not known.
-    let (Some(camera), Some(meaning)) = (camera, meaning) else { return Ok(Value::Null) };
-    let Some(cameras) = meaning.analysis.cameras().filter(|cameras| !cameras.contains(&camera)) else {
-        return Ok(Value::Null);
-    };
-    let there = match cameras {
-        [] => "none has a name".to_string(),
-        [name] => format!("there is `{name}`"),
-        names => format!("there are `{}`", names.join("`, `")),
-    };
-    Err(Failure::plain(format!("no camera is called `{camera}`: {there}")))
+    match camera.zip(meaning).map(|(camera, meaning)| has(&meaning, &camera)) {
+        Some(Err(failure)) => Err(failure),
+        _ => Ok(Value::Null),
+    }
 }
 
 /// The flags of a command that would serve it.

@@ -1,6 +1,7 @@
 //! Making the picture of a document, saved or not, beside where it is saved.
 
-use super::commands::Order;
+use super::analyst::Meaning;
+use super::commands::{Order, has};
 use super::documents::Key;
 use super::work::{Answer, Ask, Failure, Told};
 use super::world::World;
@@ -50,14 +51,19 @@ pub fn render(order: &Order) -> Answer<Value> {
         .chain([path.into()])
         .collect::<Vec<_>>();
     refuse_inputs_as_outputs(&read, std::slice::from_ref(&target.path)).map_err(wrong)?;
-    let mut errors = compiled.diagnostics.iter().filter(|said| said.severity() == Severity::Error);
-    let from = compiled.provenance(&sources).ok_or_else(|| {
+    let Some(from) = compiled.provenance(&sources) else {
+        if let Some(camera) = &about.camera
+            && let Some(meaning) = Meaning::find(view, key, &|| cancelled.load(Ordering::Relaxed))
+        {
+            has(&meaning, camera)?;
+        }
+        let mut errors = compiled.diagnostics.iter().filter(|said| said.severity() == Severity::Error);
         let first = errors.next().map_or("it is not finished", |error| error.message.as_str());
-        Failure::plain(match errors.count() {
+        return Err(Failure::plain(match errors.count() {
             0 => format!("the scene has an error: {first}"),
             more => format!("the scene has {} errors, the first: {first}", more + 1),
-        })
-    })?;
+        }));
+    };
     let control = Arc::new(Control::new());
     let name = target.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let made = beside(order, &control, &name, || build::make(from, &target, &control, interrupt));

@@ -11,6 +11,7 @@ use crate::ide::{Completion, CompletionKind, Insert, say};
 use crate::schema::{Category, FieldType, KINDS, PLACED};
 use crate::span::Span;
 use crate::syntax::ast::StatementKind;
+use crate::units;
 
 impl List<'_> {
     /// What can be the value of a field, or of anything.
@@ -30,6 +31,9 @@ impl List<'_> {
                 argument.detail = describe_wanted(field.ty);
                 argument.doc = say::field(field);
             }
+        }
+        if typing.cursor.divides_power() {
+            self.push("m2", CompletionKind::Unit, Rank::Fits).detail = units::RADIANCE.to_string();
         }
         let wanted = typing.wanted_here(field);
         let ty = match &wanted {
@@ -90,6 +94,8 @@ impl List<'_> {
     /// What a type itself offers.
     fn of_type(&mut self, ty: FieldType) {
         match ty {
+            // Nothing is computed with a word.
+            FieldType::Choice(_) if matches!(self.cursor.last(), "+" | "-" | "*" | "/") => {}
             FieldType::Choice(words) => {
                 for word in words {
                     self.push(word.name, CompletionKind::Word, Rank::Fits).doc = word.doc.into();
@@ -171,14 +177,9 @@ impl List<'_> {
 
     /// What can be asked of what ends before a point.
     pub(super) fn members(&mut self, typing: &Typing, dot: usize) {
-        let main = typing.analysis.main;
-        let ends = |span: Span| span.source == main && span.range().end == dot;
-        let types = &typing.analysis.study.notes.types;
-        // The longest expression that ends there is what the point asks.
-        let longest = types.iter().filter(|(span, _)| ends(*span)).min_by_key(|(span, _)| span.start);
-        let ty = match longest {
-            Some((_, ty)) if *ty != Type::Invalid => ty.clone(),
-            _ => self.path_type(typing, dot),
+        let ty = match typing.type_before(dot) {
+            Type::Invalid => self.path_type(typing, dot),
+            ty => ty,
         };
         self.members_of(typing, &ty);
     }
@@ -207,8 +208,16 @@ impl List<'_> {
 
     fn members_of(&mut self, typing: &Typing, ty: &Type) {
         let begins = typing.cursor.begins_statement();
-        // A statement begins with what is used as a kind, or with the file of that.
-        for (name, place, ty) in inside(typing, ty).into_iter().filter(|(.., ty)| !begins || is_used(ty)) {
+        let field = (typing.cursor.piece(1) == ":").then(|| typing.cursor.piece(0));
+        // What a file holds is taken for itself, or computed with.
+        let wanted = typing.wanted_here(field).filter(|_| matches!(ty, Type::File(_)));
+        let fits = |ty: &Type| match &wanted {
+            // A statement begins with what is used as a kind, or with the file of that.
+            _ if begins => is_used(ty),
+            Some(wanted) => wanted.accepts(&result_of(typing, ty)) || leads_to(ty, wanted),
+            None => true,
+        };
+        for (name, place, ty) in inside(typing, ty).into_iter().filter(|(.., ty)| fits(ty)) {
             let completion = self.push(&name, kind_of(&ty), Rank::Fits);
             completion.detail = detail_of(&ty);
             completion.doc = doc_of(typing, place);
@@ -286,6 +295,14 @@ fn inside(typing: &Typing, ty: &Type) -> Vec<(String, Span, Type)> {
     let shown = |inner: &Type| !matches!((ty, inner), (Type::File(_), Type::Thing(_)));
     let names = names.iter().filter(|(_, name)| shown(&name.ty));
     names.map(|(name, known)| (name.to_string(), known.place, known.ty.clone())).collect()
+}
+
+/// What comes of what has a type: of a function, what it gives.
+fn result_of(typing: &Typing, ty: &Type) -> Type {
+    match ty {
+        Type::Function(id) => typing.program.functions[id.index()].result.ty(),
+        ty => ty.clone(),
+    }
 }
 
 /// Whether a value of a type may be part of an expression that gives what is wanted.

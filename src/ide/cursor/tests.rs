@@ -14,6 +14,7 @@ fn spot(marked: &str) -> (Spot, String) {
 fn the_place_tells_what_may_stand_there() {
     let value = |field: &str| Spot::Value(Some(field.to_string()));
     let words = |words: &[&'static str]| Spot::Keyword(words.to_vec());
+    let behind = |words: &[&'static str]| Spot::Behind(words.to_vec(), None);
     for (text, wanted) in [
         ("|", Spot::Entry),
         ("sphere { ra|", Spot::Entry),
@@ -39,14 +40,14 @@ fn the_place_tells_what_may_stand_there() {
         ("for i |", words(&["in"])),
         ("param n: int |", words(&["="])),
         ("param n: [int] |", words(&["="])),
-        ("param n: int = 3 |", words(&["in", "and", "or", "to"])),
-        ("param n: int = 3 in 1 |", words(&["and", "or", "to"])),
+        ("param n: int = 3 |", behind(&["in"])),
+        ("param n: int = 3 in 1 |", behind(&["to"])),
         ("fn f(a: int) |", words(&["->"])),
         ("fn f(a: int) -> int |", words(&["="])),
-        ("let q = gap |", words(&["and", "or", "to"])),
-        ("let q = if a |", words(&["and", "or", "to", "then"])),
-        ("let q = (if a then b |)", words(&["and", "or", "to", "else"])),
-        ("plane { place: turn(y: 3deg) |", words(&["|>"])),
+        ("let q = gap |", behind(&[])),
+        ("let q = if a |", behind(&["then"])),
+        ("let q = (if a then b |)", behind(&["else"])),
+        ("plane { place: turn(y: 3deg) |", Spot::Behind(vec![], Some("place".into()))),
         ("if a {} |", words(&["else"])),
         ("if a {} else if b {} |", words(&["else"])),
         ("if a {} else {} |", Spot::Nothing),
@@ -55,6 +56,8 @@ fn the_place_tells_what_may_stand_there() {
         ("for i in a {} |", Spot::Nothing),
         ("for i in |", Spot::Value(None)),
         ("assert |", Spot::Value(None)),
+        ("assert min(1, 2) > 1, |", Spot::Reason),
+        ("assert a, \"b\" |", Spot::Nothing),
         ("import \"|", Spot::Path(true)),
         ("mesh { file: \"a/|\" }", Spot::Path(false)),
         ("// |", Spot::Nothing),

@@ -404,7 +404,10 @@ fn what_the_editor_cannot_take_is_not_sent() {
     let able = json!({
         "rename": { "prepareSupport": true },
         "codeAction": { "codeActionLiteralSupport": { "codeActionKind": { "valueSet": ["quickfix"] } } },
-        "signatureHelp": { "signatureInformation": { "documentationFormat": ["plaintext", "markdown"] } },
+        "signatureHelp": { "signatureInformation": {
+            "documentationFormat": ["plaintext", "markdown"],
+            "noActiveParameterSupport": true,
+        } },
     });
     for (can, kind) in [(true, "markdown"), (false, "plaintext")] {
         let mut client = Client::silent(&desk);
@@ -418,6 +421,12 @@ fn what_the_editor_cannot_take_is_not_sent() {
         client.open("a.rt", text);
         let help = client.at("textDocument/signatureHelp", "a.rt", 2, 27).unwrap();
         assert_eq!(help["signatures"][0]["documentation"]["kind"], kind, "{help}");
+        // Where no field is named yet, none is lit: an index that is left out or not there is the first one's.
+        let help = client.at("textDocument/signatureHelp", "a.rt", 2, 8).unwrap();
+        let made = &help["signatures"][0];
+        assert!(made["label"].as_str().unwrap().starts_with("sphere {"), "{help}");
+        assert_eq!(made.get("activeParameter"), can.then_some(&Value::Null), "{help}");
+        assert_eq!(made.get("parameters").is_some(), can, "{help}");
         assert_eq!(client.end(), Some(0));
     }
 }

@@ -3,7 +3,7 @@
 use super::super::{Desk, read_png};
 use super::client::{Client, PATIENCE};
 use super::page::{Page, get};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::time::{Duration, Instant};
 
 fn scene(width: u32) -> String {
@@ -70,18 +70,20 @@ fn a_camera_that_there_is_not_is_refused() {
     let desk = Desk::new();
     let mut client = Client::new(&desk);
     let shot = |name: &str| format!("camera {name} {{ from: (0, 1, 6)m, look: (0, 0, 0)m }}\n");
-    client.open("scene.rt", &(scene(24) + &shot("wide") + &shot("close")));
-    let start = |client: &mut Client, camera: &str| {
-        let arguments = json!([{ "uri": client.uri("scene.rt"), "camera": camera }]);
-        client
-            .ask("workspace/executeCommand", json!({ "command": "rtc.startPreview", "arguments": arguments }))
+    client.open("scene.rt", &scene(24));
+    let mut refused = |version: i32, text: &str, camera: &str, said: &str| {
+        client.replace("scene.rt", version, text);
+        for command in ["rtc.startPreview", "rtc.render"] {
+            let arguments = json!([{ "uri": client.uri("scene.rt"), "camera": camera }]);
+            let asked = json!({ "command": command, "arguments": arguments });
+            let refused = client.ask("workspace/executeCommand", asked).unwrap_err();
+            assert_eq!(refused["message"], said, "{command}");
+        }
     };
-    let message = |refused: Result<Value, Value>| refused.unwrap_err()["message"].clone();
-    assert_eq!(message(start(&mut client, "clse")), "no camera is called `clse`: there are `wide`, `close`");
-    client.replace("scene.rt", 2, &(scene(24) + &shot("wide")));
-    assert_eq!(message(start(&mut client, "close")), "no camera is called `close`: there is `wide`");
-    client.replace("scene.rt", 3, &(scene(24) + &shot("")));
-    assert_eq!(message(start(&mut client, "wide")), "no camera is called `wide`: none has a name");
+    let said = "no camera is called `clse`: there are `wide`, `close`";
+    refused(2, &(scene(24) + &shot("wide") + &shot("close")), "clse", said);
+    refused(3, &(scene(24) + &shot("wide")), "close", "no camera is called `close`: there is `wide`");
+    refused(4, &(scene(24) + &shot("")), "wide", "no camera is called `wide`: none has a name");
     assert_eq!(client.end(), Some(0));
 }
 

@@ -1,5 +1,6 @@
 //! What the call around the cursor takes.
 
+use super::super::client::Client;
 use super::super::documents::{Key, place};
 use super::super::work::{Answer, Asked, Failure};
 use super::super::world::World;
@@ -20,14 +21,17 @@ pub fn signatures(asked: &mut Asked, params: lsp::SignatureHelpParams) -> Answer
         return Err(failure);
     }
     let help = |found: Vec<Signature>| lsp::SignatureHelp {
-        signatures: found.into_iter().map(|found| signature(found, session.client.markdown_calls)).collect(),
+        signatures: found.into_iter().map(|found| signature(found, &session.client)).collect(),
         active_signature: Some(0),
         active_parameter: None,
     };
     Ok(Some(found).filter(|found| !found.is_empty()).map(help))
 }
 
-fn signature(signature: Signature, markdown: bool) -> lsp::SignatureInformation {
+/// Where none of the parameters is being written, none is to be marked. `null` says so, to a client that knows it; an index
+/// that is left out or not there is 0 by the protocol, so another client is told of none, which are shown in the label all
+/// the same.
+fn signature(signature: Signature, client: &Client) -> lsp::SignatureInformation {
     let Signature { label, doc, parameters, active } = signature;
     // Counted in UTF-16 whatever else is agreed on.
     let units = |byte: usize| label[..label.floor_char_boundary(byte)].encode_utf16().count() as u32;
@@ -36,13 +40,14 @@ fn signature(signature: Signature, markdown: bool) -> lsp::SignatureInformation 
             units(parameter.range.start),
             units(parameter.range.end),
         )),
-        documentation: documentation(&parameter.doc, markdown),
+        documentation: documentation(&parameter.doc, client.markdown_calls),
     };
+    let is_told = active.is_some() || client.marks_none;
     lsp::SignatureInformation {
-        documentation: documentation(&doc, markdown),
-        parameters: Some(parameters.iter().map(parameter).collect()),
-        // One that is not there marks none.
-        active_parameter: Some(lsp::ActiveParameter::Int(active.unwrap_or(parameters.len()) as u32)),
+        documentation: documentation(&doc, client.markdown_calls),
+        parameters: is_told.then(|| parameters.iter().map(parameter).collect()),
+        active_parameter: is_told
+            .then(|| active.map_or(lsp::ActiveParameter::Null, |active| (active as u32).into())),
         label,
     }
 }
