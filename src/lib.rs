@@ -421,8 +421,13 @@ impl Compiled {
                 let message =
                     format!("the noise is still {:.2}% after {samples} samples a pixel", 100.0 * noise);
                 Diagnostic::new(Code::W0701, message, place)
-                    .at("not reached")
-                    .help("give larger lights, which are found more easily, or allow more noise")
+                    .at(match self.places.noise {
+                        Some(_) => "not reached",
+                        None => "the picture of this file",
+                    })
+                    .help(
+                        "give larger lights, which are found more easily, more samples, or allow more noise",
+                    )
             }
             Finding::Cut { share, bounces } => {
                 let message = format!(

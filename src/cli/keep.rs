@@ -1,10 +1,14 @@
 //! Keeps the samples of a picture in the making, and goes on from them.
 
+mod account;
+
 use super::args::{Build, Every, Keeping, Resume};
 use super::build::Context;
 use super::interrupt::Interrupt;
 use super::target::{Aside, Target};
 use super::{Problem, build, input, plain};
+pub use account::Account;
+use account::Amount;
 use rt_lang::output::{Facts, is_exr};
 use rt_lang::render::Shown;
 use rt_lang::render::making::Making;
@@ -161,15 +165,6 @@ pub fn beside(targets: &[Target]) -> Result<PathBuf, Problem> {
     Ok(name.into())
 }
 
-/// Which of a picture's samples were there before, and where they are kept.
-#[derive(Default)]
-pub struct Account {
-    from: Option<Amount>,
-    to: Option<Amount>,
-    /// Whether there are more that could not be kept.
-    lacks: bool,
-}
-
 /// Reads a file of samples, or says why it is none. No more of it is read than its head promises. Only one that is `plain` may
 /// not be a pipe or standard input.
 pub fn load(path: &Path, plain: bool) -> Result<Result<Saved, Refused>, Problem> {
@@ -192,61 +187,6 @@ fn start(path: &Path) -> io::Result<Vec<u8>> {
     let mut start = vec![];
     input::open_plain(path)?.take(HEAD).read_to_end(&mut start)?;
     Ok(start)
-}
-
-/// Samples in a file.
-#[derive(Clone)]
-struct Amount {
-    /// How many, in words.
-    samples: String,
-    /// How many a pixel has on average.
-    mean: f64,
-    file: PathBuf,
-}
-
-impl Amount {
-    fn of(making: &Making, file: &Path) -> Amount {
-        let mean = making.mean_samples();
-        Amount { samples: build::count(making.samples(), mean), mean, file: file.into() }
-    }
-}
-
-impl Account {
-    /// From what it was gone on, in words.
-    pub fn went_on(&self) -> Option<String> {
-        let from = self.from.as_ref()?;
-        Some(format!("went on from {} in `{}`", from.samples, from.file.display()))
-    }
-
-    /// What is kept, in words.
-    fn kept(&self) -> Option<String> {
-        let kept = self.to.as_ref().map(|to| format!("kept {} in `{}`", to.samples, to.file.display()));
-        self.with_lack(kept)
-    }
-
-    /// A line about both.
-    pub fn line(&self) -> Option<String> {
-        let there = self.to.as_ref().zip(self.from.as_ref()).filter(|(to, from)| from.file == to.file);
-        let kept = match there {
-            Some((to, from)) if from.mean == to.mean => match self.lacks {
-                true => Some("could keep no more".to_string()),
-                false => Some("where nothing was left to trace".to_string()),
-            },
-            Some((to, _)) => self.with_lack(Some(format!("kept {} there", to.samples))),
-            None => self.kept(),
-        };
-        let parts: Vec<String> = self.went_on().into_iter().chain(kept).collect();
-        (!parts.is_empty()).then(|| parts.join(", "))
-    }
-
-    /// What is said of what is kept, and that it is not all.
-    fn with_lack(&self, kept: Option<String>) -> Option<String> {
-        match (kept, self.lacks) {
-            (Some(kept), true) => Some(format!("{kept}, could keep no more")),
-            (None, true) => Some("could keep none".to_string()),
-            (kept, false) => kept,
-        }
-    }
 }
 
 /// Keeps samples every now and then.
@@ -477,37 +417,5 @@ mod tests {
         assert!(
             due(ten, 0, 10.0, 0) && !due(ten, 900, 9.0, 0) && !due(ten, 19, 10.0, 1) && due(ten, 20, 10.0, 1)
         );
-    }
-
-    #[test]
-    fn the_account_never_says_that_what_could_not_be_kept_is() {
-        let amount = |mean: u32, file: &str| {
-            Some(Amount { samples: format!("{mean} samples"), mean: mean.into(), file: file.into() })
-        };
-        let told = |from, to, lacks| {
-            let account = Account { from, to, lacks };
-            [account.line(), account.kept()].map(Option::unwrap_or_default)
-        };
-        let went_on = "went on from 4 samples in `a`";
-        for (from, to, line, kept) in [
-            (None, None, "could keep none", "could keep none"),
-            (None, amount(7, "a"), "kept 7 samples in `a`, could keep no more", ""),
-            (amount(4, "a"), None, &format!("{went_on}, could keep none"), "could keep none"),
-            (
-                amount(4, "a"),
-                amount(4, "a"),
-                &format!("{went_on}, could keep no more"),
-                "kept 4 samples in `a`, could keep no more",
-            ),
-            (
-                amount(4, "a"),
-                amount(7, "a"),
-                &format!("{went_on}, kept 7 samples there, could keep no more"),
-                "kept 7 samples in `a`, could keep no more",
-            ),
-        ] {
-            let kept = if kept.is_empty() { line } else { kept };
-            assert_eq!(told(from, to, true), [line, kept]);
-        }
     }
 }

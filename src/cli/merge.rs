@@ -42,8 +42,11 @@ pub fn run(arguments: &Merge, terminal: Terminal, interrupt: &Interrupt) -> Resu
     let merging = merging.ok_or_else(|| Problem::new("there is no share to begin with"))?;
     let missing = merging.missing();
     if !missing.is_empty() && !arguments.partial {
-        return Err(Problem::new(missing_words(&missing, merging.share().of))
-            .help("make them with `--shard I/N`, or look at what there is with `--partial`"));
+        let of = merging.share().of;
+        return Err(Problem::new(missing_words(&missing, of)).help(format!(
+            "make what is missing, beginning with `--shard {}/{of}`, or look at what there is with `--partial`",
+            missing[0]
+        )));
     }
     let (film, identity) = (merging.film(), &merging.subject().identity);
     let samples = film.pixels().first().map_or(0, |pixel| pixel.samples());

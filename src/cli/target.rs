@@ -4,6 +4,7 @@
 use super::build::Context;
 use super::input::is_standard;
 use super::interrupt::Interrupt;
+use super::progress::duration;
 use super::{Problem, claim, plain};
 use rt_lang::output::Format;
 use rt_lang::report::printable_lines;
@@ -291,6 +292,13 @@ pub fn patiently<T>(
                     context.say(&format!("{}: it is waited for", problem.message));
                 }
                 std::thread::sleep(PERIOD);
+            }
+            Err(problem) if problem.busy && said => {
+                let waited = format!(
+                    "it was waited for {}: give `--wait` longer, or write another file",
+                    duration(wait)
+                );
+                return Err(problem.help(waited));
             }
             ended => return ended,
         }

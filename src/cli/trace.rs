@@ -183,8 +183,15 @@ fn limits(arguments: &Build, scene: &Scene, share: Option<Share>) -> Result<Limi
             return Err(problem.help("give one with `--noise 1%`, or leave the flag out"));
         }
         limits.least = least;
-        if arguments.taking.samples.is_none() {
-            limits.samples = limits.samples.max(least);
+        match arguments.taking.samples {
+            Some(samples) if samples < least => {
+                let problem = Problem::new(format!(
+                    "`--min-samples {least}` asks for more samples than `--samples {samples}` allows"
+                ));
+                return Err(problem.help("raise the one, or lower the other"));
+            }
+            Some(_) => {}
+            None => limits.samples = limits.samples.max(least),
         }
     }
     Ok(limits)

@@ -41,6 +41,7 @@ impl Merging {
             return refused(format!("does not go with `{first}`{more}: {why}"));
         }
         match &mut self.names[share.index as usize - 1] {
+            Some(known) if known == name => refused("is given twice"),
             Some(known) => refused(format!("is share {} of {}, and so is `{known}`", share.index, share.of)),
             place => {
                 *place = Some(name.to_string());
@@ -136,11 +137,17 @@ type Parts<'s> = (&'s Subject, &'s Facts, f64);
 /// Why another share does not go with one, such that the picture would be another or depend on which of them is the first.
 fn unlike((own, facts, scale): Parts, (other, others, other_scale): Parts) -> Option<String> {
     const CALLED: &str = "this share";
-    // Its own number is what a share may differ in.
-    let index = other.share.map_or(1, |share| share.index);
-    let expected = Subject { share: own.share.map(|share| Share { index, ..share }), ..own.clone() };
+    let expected = Subject { share: other.share, ..own.clone() };
     if let Some(why) = expected.refuses(other, CALLED) {
         return Some(why);
+    }
+    // Its own number is what a share may differ in.
+    let division = |subject: &Subject| {
+        subject.share.map(|Share { samples, of, .. }| format!("{samples} samples in {of} shares"))
+    };
+    let divisions = division(own).zip(division(other));
+    if let Some((own, other)) = divisions.filter(|(own, other)| own != other) {
+        return Some(format!("its picture is of {other}, and that one of {own}"));
     }
     let stops = |facts: &Facts| facts.stops.map_or("none".to_string(), |stops| stops.to_string());
     let curve = |facts: &Facts| facts.tonemap.map_or("none", Tonemap::word);

@@ -193,7 +193,7 @@ mod on_unix {
         // Who keeps nothing is in nobody's way, and nobody in theirs.
         build(&desk, "-o a.png").expect(0, &[]);
         let quiet = build(&desk, "-o a.png --resume --wait 600ms");
-        quiet.expect(2, &["another process"]);
+        quiet.expect(2, &["another process", "it was waited for 600 ms: give `--wait` longer"]);
         assert!(!quiet.stderr.contains("it is waited for"), "{}", quiet.stderr);
         let mut second = desk
             .command("build ball.rt --size 400x300 --samples 1 -o a.png --resume --wait 10min")
@@ -243,6 +243,55 @@ fn a_damaged_record_is_no_reason_to_stop_a_film() {
     let quiet = film(&desk, "-o f{}.png -q");
     quiet.expect(0, &["the frame is made; asked for again"]);
     assert!(quiet.stderr.starts_with("warning: ") && !quiet.stderr.contains("done"), "{}", quiet.stderr);
+}
+
+#[test]
+fn a_checkpoint_beside_a_frame_that_is_done_is_removed_unless_it_has_more() {
+    let desk = Desk::new();
+    film(&desk, "-o f{}.png").expect(0, &[]);
+    let leave = |samples: u32| {
+        let rest = format!("--samples {samples} --checkpoint=f1.png.checkpoint --resume=never -o other.png");
+        desk.run(&format!("build rise.rt -q --size 16x12 {rest}")).expect(0, &[]);
+    };
+    leave(3);
+    film(&desk, "-o f{}.png").expect(0, &["frame 1 of 3 is done"]);
+    assert!(desk.path("f1.png.checkpoint").exists());
+    leave(2);
+    film(&desk, "-o f{}.png").expect(0, &["frame 1 of 3 is done"]);
+    assert!(!desk.path("f1.png.checkpoint").exists());
+}
+
+#[test]
+fn a_film_is_not_replaced_by_some_of_its_frames() {
+    let desk = Desk::new();
+    // As long as there is none, some frames make one.
+    film(&desk, "--only 2 -o f.webp").expect(0, &["f.webp: animated WebP of 1 frame"]);
+    film(&desk, "--only 2 -o f.webp").expect(0, &["frame 2 of 3 is done", "of 1 frame"]);
+    film(&desk, "-o f.webp").expect(0, &["of 3 frames"]);
+    let whole = fs::read(desk.path("f.webp")).unwrap();
+    film(&desk, "--only 2 -o f.webp")
+        .expect(2, &["`f.webp` would be replaced by 1 of the 3 frames", "leave `--only` out"]);
+    assert_eq!(fs::read(desk.path("f.webp")).unwrap(), whole);
+    // What is not kept is told by nothing to be of a longer film.
+    let mut command = desk.command("build rise.rt --size 16x12 --samples 2 --frames 3 --only 2 -o f.webp");
+    ended(command.args(["--sweep", "t = 0 to 1m"]).output().unwrap()).expect(0, &["of 1 frame"]);
+}
+
+#[test]
+fn shares_that_do_not_go_together_are_told_by_what_they_are() {
+    let desk = Desk::new();
+    let share = |samples: u32, share: &str, to: &str| {
+        desk.run(&format!("build ball.rt -q --size 16x12 --samples {samples} --shard {share} -o {to}"))
+            .expect(0, &[]);
+    };
+    share(10, "1/3", "1.exr");
+    share(30, "2/3", "2.exr");
+    desk.run("merge 1.exr 2.exr -o all.exr").expect(
+        2,
+        &["`2.exr` does not go with `1.exr`: its picture is of 30 samples in 3 shares, and that one of 10 samples in 3"],
+    );
+    desk.run("merge 1.exr 1.exr -o all.exr").expect(2, &["`1.exr` is given twice"]);
+    desk.run("merge 1.exr -o all.exr").expect(2, &["shares 2, 3 of 3 are missing", "`--shard 2/3`"]);
 }
 
 #[test]

@@ -37,6 +37,8 @@ use rt_lang::lower::Overrides;
 use rt_lang::output::animation::Reel;
 use rt_lang::output::{Facts, Format, Picture, decode_shown};
 use rt_lang::render::Tracer;
+use rt_lang::render::halt::Limits;
+use rt_lang::saved::Head;
 use rt_lang::scene::{Background, Scene};
 use rt_lang::{Compiled, Finding, Options, Series};
 use sink::Sink;
@@ -261,6 +263,7 @@ impl Studio<'_, '_> {
                     if !arguments.quiet {
                         terminal.line(&format!("{} is done", self.orders.name(number)));
                     }
+                    self.clear(&targets, &plan)?;
                     return Ok(Shot::There(targets));
                 }
             }
@@ -278,11 +281,7 @@ impl Studio<'_, '_> {
             if let Err(problem) = mark::record(&subject, &targets, interrupt) {
                 terminal.warning(&problem.help("the frame is made; asked for again, it is made anew"));
             }
-            // What is done needs no samples any more; what is no checkpoint is nobody's to remove.
-            let kept = keep::beside(&targets)?;
-            if keep::head(&kept).is_some() {
-                let _ = fs::remove_file(kept);
-            }
+            remove_checkpoint(&targets, |_| true)?;
         }
         let findings = self.findings(&compiled, scene, &traced);
         self.say(&findings)?;
@@ -293,6 +292,13 @@ impl Studio<'_, '_> {
         }
         let shown = traced.denoised.map_or(traced.picture, |denoised| denoised.picture);
         Ok(Shot::Made(shown, traced.facts))
+    }
+
+    /// Removes the checkpoint that was left beside a frame that is done, unless there may be more in it.
+    fn clear(&self, targets: &[Target], plan: &Plan) -> Result<(), Problem> {
+        let Limits { samples, noise, time, .. } = *plan.limits();
+        let has_no_more = |head: &Head| head.facts.samples.is_some_and(|[_, most]| most <= samples);
+        remove_checkpoint(targets, |head| (noise, time) == (None, None) && has_no_more(head))
     }
 
     /// What is probably not meant in a frame. An exposure that another frame chose may well burn this one out.
@@ -319,6 +325,15 @@ impl Studio<'_, '_> {
             if made == of as usize { format!("{of} {unit}") } else { format!("{made} of {of} {unit}") };
         terminal.line(&format!("{which} in {}{camera}{exposure}", duration(start.elapsed())));
     }
+}
+
+/// Removes a checkpoint, for what is done needs no samples any more. What is none is nobody's to remove.
+fn remove_checkpoint(targets: &[Target], needless: impl FnOnce(&Head) -> bool) -> Result<(), Problem> {
+    let kept = keep::beside(targets)?;
+    if keep::head(&kept).is_some_and(|head| needless(&head)) {
+        let _ = fs::remove_file(kept);
+    }
+    Ok(())
 }
 
 /// A frame that was there. One that goes into a film is kept as an EXR, if it is kept.

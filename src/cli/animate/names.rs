@@ -116,6 +116,10 @@ fn not_a_film(path: &Path, text: &str) -> Problem {
                 "say where the frame's number goes: `-o {stem}.{{04}}.{extension}`; or make a film: `-o {stem}.webp`"
             ))
         }
+        (None, _) if CONTAINERS.iter().any(|(name, _)| text == format!("{name}:-")) => {
+            let problem = Problem::new("a video is written to a file, and not to standard output");
+            problem.help("name the file: `-o film.mp4`; `apng:-` and `webp:-` can go there")
+        }
         (None, _) if text.ends_with(":-") || extension_is_missing(path) => {
             Problem::new(format!("`{text}` does not say the format of a film")).help(FORMS)
         }

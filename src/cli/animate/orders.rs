@@ -69,6 +69,7 @@ impl Orders {
         orders.refuse_misfits(arguments)?;
         orders.refuse_no_places()?;
         orders.kept = orders.kept_frames(arguments)?;
+        orders.refuse_shorter_films(arguments)?;
         Ok(orders)
     }
 
@@ -93,12 +94,34 @@ impl Orders {
         build::refuse_inputs_as_outputs(&inputs, &films.iter().cloned().chain(near).collect::<Vec<_>>())
     }
 
+    /// Refuses to replace a film by some of its frames, where others of it are kept.
+    fn refuse_shorter_films(&self, arguments: &Build) -> Result<(), Problem> {
+        let others: Vec<u32> =
+            (1..=self.of).filter(|number| self.numbers.binary_search(number).is_err()).collect();
+        if !arguments.keeping.keeps() || others.is_empty() {
+            return Ok(());
+        }
+        let Some(film) = self.film_paths().find(|path| path.exists()) else { return Ok(()) };
+        if self.pictures().all(|pattern| pattern.there(&others).is_empty()) {
+            return Ok(());
+        }
+        let (film, made, of) = (film.display(), self.numbers.len(), self.of);
+        let problem = Problem::new(format!(
+            "`{film}` would be replaced by {made} of the {of} frames, and others of it are kept"
+        ));
+        Err(problem.help("leave `--only` out, for what is done is not made again; or name another film"))
+    }
+
+    /// The names of the pictures of frames, where they are to be seen or are kept.
+    fn pictures(&self) -> impl Iterator<Item = Pattern> {
+        let kept = self.kept.iter().filter_map(|folder| Pattern::kept(folder));
+        self.each.iter().cloned().chain(kept)
+    }
+
     /// The names of all that is written of frames: pictures, and where they are kept, their records and checkpoints.
     fn written(&self) -> Vec<Pattern> {
-        let kept = self.kept.iter().filter_map(|folder| Pattern::kept(folder));
-        let pictures: Vec<Pattern> = self.each.iter().cloned().chain(kept).collect();
         let beside = ["", mark::SUFFIX, keep::SUFFIX];
-        pictures.iter().flat_map(|picture| beside.map(|suffix| picture.clone().with(suffix))).collect()
+        self.pictures().flat_map(|picture| beside.map(|suffix| picture.clone().with(suffix))).collect()
     }
 
     fn film_paths(&self) -> impl Iterator<Item = PathBuf> {

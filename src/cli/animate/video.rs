@@ -7,8 +7,9 @@ use super::super::interrupt::Interrupt;
 use super::super::{Problem, plain};
 use rt_lang::output::animation::Reel;
 use std::ffi::OsString;
+use std::fs;
 use std::io::{Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{ChildStdin, Command, Stdio};
 use std::thread::JoinHandle;
 
@@ -21,6 +22,8 @@ const MOST_SAID: u64 = 1 << 16;
 pub struct Video {
     id: u32,
     frames: Option<ChildStdin>,
+    /// The file that it writes.
+    to: PathBuf,
     /// What it says on standard error.
     said: Option<JoinHandle<String>>,
     interrupt: Interrupt,
@@ -117,7 +120,7 @@ impl Video {
             String::from_utf8_lossy(&said).into_owned()
         };
         let said = std::thread::Builder::new().spawn(read).ok();
-        Ok(Video { id, frames, said, interrupt: interrupt.clone() })
+        Ok(Video { id, frames, to: to.into(), said, interrupt: interrupt.clone() })
     }
 
     /// Sends a frame.
@@ -132,7 +135,12 @@ impl Video {
 
     /// Waits until the video is written.
     pub fn finish(mut self) -> Result<(), Problem> {
-        self.end()
+        self.end()?;
+        match fs::metadata(&self.to) {
+            Ok(written) if written.len() > 0 => Ok(()),
+            Ok(_) => Err(failed("", "it has written nothing")),
+            Err(error) => Err(failed("", &plain(&error))),
+        }
     }
 
     fn end(&mut self) -> Result<(), Problem> {

@@ -1,6 +1,7 @@
 //! When a picture is done, how its samples are kept, and which share of them is made.
 
 use clap::Args;
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
@@ -24,7 +25,8 @@ pub struct Keeping {
     /// Keeps the samples in this file, or if none is named beside the picture that the first `-o` names: every now and then, at
     /// the end, and when the process is asked to end. Run again, it goes on from there; with a higher limit it adds samples to a
     /// picture that was done.
-    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true,
+        value_parser = PathBufValueParser::new().try_map(checkpoint))]
     pub checkpoint: Option<Option<PathBuf>>,
 
     /// How often they are kept: every so long, as `60s` or `5min`, or whenever so many samples a pixel came, as `100spp`. By
@@ -128,11 +130,22 @@ pub fn noise(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "a share of white above 0 and up to 100%, such as 1%".to_string())
 }
 
+fn checkpoint(file: PathBuf) -> Result<PathBuf, String> {
+    match file.to_str() {
+        Some("-") => Err("a file, for what is written to standard output cannot be read again".into()),
+        Some(word @ ("auto" | "never")) => {
+            Err(format!("a file: `{word}` is for `--resume`, and a file of that name is `./{word}`"))
+        }
+        _ => Ok(file),
+    }
+}
+
 fn resume(text: &str) -> Result<Resume, String> {
     Ok(match text {
         "auto" => Resume::Auto,
         "never" => Resume::Never,
         "" => return Err("`auto`, `never`, or a file".into()),
+        "-" => return Err("`auto`, `never`, or a file, for samples are not read from standard input".into()),
         file => Resume::From(file.into()),
     })
 }
