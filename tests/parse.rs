@@ -39,6 +39,7 @@ fn cases() {
         insta::glob!("cases/syntax/*.rt", |path| {
             let text = std::fs::read_to_string(path).unwrap();
             let (file, diagnostics) = read(&text);
+            assert!(is_ordered(&file.body), "{}", path.display());
             // The deep and the long ones would fill pages.
             let long = text.lines().any(|line| line.len() > 1000);
             let mut shown = String::new();

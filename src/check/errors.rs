@@ -37,12 +37,14 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
     if let Some(word) = written_as(what, &name.text) {
         return diagnostic.help(format!("write `{word}`")).fix(name.span, word);
     }
-    if (what, name.text.as_str()) == ("unit", "M") {
-        // A million may be meant.
-        return diagnostic.help("metres are written `m`").offer("write `m`", vec![(name.span, "m".into())]);
+    if let Some((of, unit)) = unit_in_other_case(what, &name.text) {
+        return offer(diagnostic.help(format!("{of} are written `{unit}`")), name, unit);
     }
     if let Some(help) = said_otherwise(what, &name.text) {
-        return diagnostic.help(help);
+        let here = called_here(what, &name.text);
+        return here
+            .into_iter()
+            .fold(diagnostic.help(help), |diagnostic, here| offer(diagnostic, name, here));
     }
     // What only stands inside another is not meant where anything may stand.
     let inner = |kind: &&str| what == "kind" && schema::is_part(kind);
@@ -60,14 +62,16 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
         _ if what == "kind"
             && let Some(keyword) = ["part", "else"].into_iter().find(|word| is_near(&name.text, word)) =>
         {
-            let edit = vec![(name.span, keyword.to_string())];
-            let diagnostic = diagnostic.help(format!("did you mean `{keyword}`?"));
-            diagnostic.offer(format!("replace it with `{keyword}`"), edit)
+            offer(diagnostic.help(format!("did you mean `{keyword}`?")), name, keyword)
         }
         _ if what == "kind"
             && let Some(here) = elsewhere() =>
         {
-            with_familiar(diagnostic, here, name.span, candidates)
+            let diagnostic = with_familiar(diagnostic, here, name.span, candidates);
+            match here.name {
+                Some(kind) if !here.same_value => offer(diagnostic, name, kind),
+                _ => diagnostic,
+            }
         }
         Some(guess) => guess.ask(diagnostic, name.span, ""),
         None if what == "unit" && is_side(&name.text) => {
@@ -84,11 +88,37 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
     }
 }
 
+/// Offers another word in place of a name.
+fn offer(diagnostic: Diagnostic, name: &Name, word: &str) -> Diagnostic {
+    diagnostic.offer(format!("replace it with `{word}`"), vec![(name.span, word.to_string())])
+}
+
+/// A unit whose letter means something else in this case: of `M` a million, and of `k` a thousand.
+fn unit_in_other_case(what: &str, name: &str) -> Option<(&'static str, &'static str)> {
+    match (what, name) {
+        ("unit", "M") => Some(("metres", "m")),
+        ("unit", "k") => Some(("kelvins", "K")),
+        _ => None,
+    }
+}
+
+/// The function here that does what one of another name does elsewhere.
+fn called_here(what: &str, name: &str) -> Option<&'static str> {
+    match (what, name) {
+        ("function", "rotate") => Some("turn"),
+        ("function", "translate") => Some("move"),
+        ("function", "len" | "size" | "count") => Some("length"),
+        ("function", "lerp") => Some("mix"),
+        _ => None,
+    }
+}
+
 /// The word that a name certainly means.
 fn written_as(what: &str, name: &str) -> Option<&'static str> {
     match (what, name) {
         ("name", "yes" | "on" | "True" | "TRUE") => Some("true"),
         ("name", "no" | "off" | "False" | "FALSE") => Some("false"),
+        ("unit", "w") => Some("W"),
         ("unit", _) => units::spelt_out(name),
         _ => None,
     }
@@ -118,6 +148,7 @@ fn said_otherwise(what: &str, name: &str) -> Option<String> {
         ("function", "atan") => "the angle of a slope is `atan2(y, x)`".into(),
         ("function", "lerp") => "`mix(a, b, t)` lies between two values".into(),
         ("kind", "new") => "leave it out: a thing begins with its kind: `sphere { … }`".into(),
+        ("unit", "spp" | "sample" | "samples") => "a number of samples has no unit".into(),
         ("kind", "while") => "`for` repeats: `for i in range(7) { … }`".into(),
         ("unit", "px" | "pixel" | "pixels") => "a number of pixels has no unit".into(),
         _ => return None,
@@ -317,6 +348,19 @@ pub(super) fn cannot_hold(inner: &Path, outer: &str, category: Category) -> Diag
     Diagnostic::new(Code::E0301, format!("`{outer}` cannot hold things"), path_span(inner))
         .at(format!("`{kind}` does not belong inside"))
         .help(help)
+}
+
+/// `sphere { diffuse { color: red } }`; `free` is whether nothing else is its material.
+pub(super) fn bare_material(inner: &Path, outer: &str, free: bool) -> Diagnostic {
+    let (kind, place) = (path_text(inner), path_span(inner));
+    let diagnostic =
+        Diagnostic::new(Code::E0301, format!("`{outer}` cannot hold things"), place).at("a material");
+    if !free {
+        return diagnostic.help("what it is made of is its `material`, of which there is one");
+    }
+    diagnostic
+        .help(format!("what it is made of is its `material`: `material: {kind} {{ … }}`"))
+        .fix(place.before(), "material: ")
 }
 
 pub(super) fn cannot_hold_statement(span: Span, outer: &str) -> Diagnostic {

@@ -3,7 +3,7 @@
 use super::block::{path_span, path_text};
 use super::notes::{Meaning, word_of};
 use super::program::{Around, Base, Expr, ExprKind, FieldPlace, Make, Written};
-use super::scope::{Item, Place, built_in};
+use super::scope::{Found, Item, Place, built_in};
 use super::types::{Element, FieldSet, Kind, Making, Type};
 use super::{Checker, errors};
 use crate::diagnostic::Code;
@@ -17,7 +17,7 @@ impl Checker<'_> {
     /// A thing, in the picture or not. What is missing is for whoever uses it to say.
     pub(super) fn make(&mut self, construct: &ast::Construct, name: Option<&Name>) -> (Make, Type) {
         self.nodes += 1;
-        let (base, known) = self.kind_of(&construct.kind);
+        let (base, known) = self.kind_of(&construct.kind, name);
         let holds = known.is_some_and(|making| making.kind == Kind::BuiltIn(schema::group::KIND));
         let Sorted { items, parts, misplaced, lost } =
             self.sort_entries(&construct.body.entries, known.map(|making| making.kind), holds);
@@ -78,8 +78,8 @@ impl Checker<'_> {
         };
     }
 
-    /// What stands before `{`: what the thing begins as.
-    fn kind_of(&mut self, path: &ast::Path) -> (Base, Option<Making>) {
+    /// What stands before `{`: what the thing begins as. `second` is the word behind that.
+    fn kind_of(&mut self, path: &ast::Path, second: Option<&Name>) -> (Base, Option<Making>) {
         let name = &path.first;
         if let Some(kind) = schema::kind(&name.text) {
             self.note(name.span, Some(Meaning::Kind(kind)));
@@ -96,6 +96,13 @@ impl Checker<'_> {
             };
         }
         let Some(found) = self.lookup(&name.text) else {
+            if let Some((kind, second)) =
+                second.and_then(|second| Some((schema::kind(&second.text)?, second)))
+                && let Some(diagnostic) = errors::before_kind(name, second)
+            {
+                self.report(diagnostic);
+                return (Base::Invalid, Some(built_in(kind)));
+            }
             let diagnostic = errors::unknown(Code::E0101, "kind", name, &self.kind_names());
             self.report_lost(&name.text, diagnostic);
             // What stands inside is looked at as if the kind had been spelt right.
@@ -178,8 +185,15 @@ impl Checker<'_> {
                             parts.push((index, construct));
                         }
                         (Some(kind), None, _) => {
-                            let (name, category) = (self.kind_name(kind), kind.category());
-                            self.report(errors::cannot_hold(&construct.kind, &name, category));
+                            let (outer, category) = (self.kind_name(kind), kind.category());
+                            let diagnostic = match self.material_of(kind, construct) {
+                                true => {
+                                    let free = name.is_none() && !entries.iter().any(gives_material);
+                                    errors::bare_material(&construct.kind, &outer, free)
+                                }
+                                false => errors::cannot_hold(&construct.kind, &outer, category),
+                            };
+                            self.report(diagnostic);
                             misplaced.push(construct);
                         }
                         (None, ..) => lost.push(statement),
@@ -196,6 +210,17 @@ impl Checker<'_> {
             }
         }
         Sorted { items, parts, misplaced, lost }
+    }
+
+    /// Whether what stands in a thing of a kind is its material, without the name of the field.
+    fn material_of(&mut self, outer: Kind, inner: &ast::Construct) -> bool {
+        let name = &inner.kind.first.text;
+        let category = match (schema::kind(name), self.lookup(name)) {
+            (Some(kind), _) => Some(kind.get().category),
+            (None, Some(Found { ty: Type::Made(making), .. })) => Some(making.kind.category()),
+            _ => None,
+        };
+        category == Some(Category::Material) && self.find_field(outer, "material").is_some()
     }
 
     /// The field of `kind` that a statement of this kind, or of a prototype of it, inside fills.
@@ -459,4 +484,10 @@ pub(super) fn suggested_unit(ty: FieldType) -> Option<String> {
         FieldType::OneOf(types) => types.iter().find_map(|ty| suggested_unit(*ty)),
         _ => None,
     }
+}
+
+/// Whether an entry is the material of a thing, or may be.
+fn gives_material(entry: &Entry) -> bool {
+    matches!(entry, Entry::Field(ast::Field { name, .. }) | Entry::Broken(ast::Broken { name: Some(name), .. })
+        if name.text == "material")
 }

@@ -290,7 +290,8 @@ impl Checker<'_> {
         let Some(found) = self.lookup(&path.first.text) else {
             let diagnostic = match path.rest.is_empty() {
                 true => errors::unknown(Code::E0101, "function", &path.first, &self.function_names()),
-                false => errors::unknown_name(&path.first, &self.value_names()),
+                false => errors::function_of_nothing(path)
+                    .unwrap_or_else(|| errors::unknown_name(&path.first, &self.value_names())),
             };
             self.report_lost(&path.first.text, diagnostic);
             return None;

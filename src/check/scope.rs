@@ -221,9 +221,10 @@ impl Checker<'_> {
             let (Item::Statement(_), Some(name)) = (statement, statement.name()) else { continue };
             let free = statement.drawn() || place == Place::Imported;
             match scope.names.get(&name.text) {
+                // With a kind that there is not, the name may be the kind.
+                Some(_) if schema::kind(&name.text).is_some() && self.is_of_no_kind(statement, items) => {}
                 Some(&first) => self.report(errors::duplicate(name, Some(&scope.known[first].name))),
                 None => {
-                    // With a kind that there is not, the name may be the kind.
                     if !self.is_of_no_kind(statement, items) {
                         self.report_shadowing(name);
                     }

@@ -75,6 +75,10 @@ fn shape(kind: &str, name: &str) -> Option<Familiar> {
         ("box", "min" | "max" | "from" | "to" | "corner" | "corner1" | "corner2") => {
             rewritten("size", "a box stands around `at` with its `size`: `at: (0, 1, 0)m, size: (2, 2, 2)m`")
         }
+        ("cylinder", "top" | "top_radius" | "radius_top" | "radius1" | "radius2" | "taper") => elsewhere(
+            "a `cylinder` is as wide at both ends: what is not is a `cone`, with its `top`: \
+             `cone { radius: 20cm, top: 10cm, height: 50cm }`",
+        ),
         ("cylinder" | "cone" | "paraboloid", "from" | "to" | "start" | "end" | "base" | "top" | "cap") => {
             rewritten(
                 "height",

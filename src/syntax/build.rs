@@ -297,10 +297,11 @@ impl<'t> Builder<'t> {
                     if !other && (belongs || !matches!(entry, Entry::Field(_))) {
                         entries.push(entry);
                     }
-                    let swallowed = self.swallowed.take().into_iter();
-                    let given =
-                        swallowed.map(|name| Entry::Broken(Broken { span: name.span, name: Some(name) }));
-                    entries.extend(given);
+                    // Those of parentheses inside others were found first.
+                    let mut swallowed = self.swallowed.take();
+                    swallowed.sort_by_key(|name| name.span.start);
+                    let given = |name: Name| Entry::Broken(Broken { span: name.span, name: Some(name) });
+                    entries.extend(swallowed.into_iter().map(given));
                 }
             }
         }

@@ -46,6 +46,11 @@ pub(in crate::check) fn mismatch(
             _ => diagnostic.help("name a thing that stands in the picture: `sphere ball { … }`"),
         },
         _ => match (field, ty) {
+            (FieldType::Choice(words), Type::Text)
+                if let Some(word) = words.iter().find(|word| word.name == text.trim_matches('"')) =>
+            {
+                diagnostic.help(format!("the word has no quotes: `{}`", word.name)).fix(span, word.name)
+            }
             (FieldType::Choice(words), _) => diagnostic.help(word_list(words)),
             (FieldType::Tuple(..) | FieldType::IntTuple(_), _) => {
                 diagnostic.help(format!("such as `{}`", example_tuple(field)))
@@ -306,7 +311,10 @@ pub(in crate::check) fn sum(symbol: &str, at: Span, [a, b]: [(Span, &Type); 2]) 
         .iter()
         .any(|(_, ty)| matches!(ty, Type::Scalar(e) | Type::Tuple(_, e) if e.dim() == units::NONE));
     let diagnostic = diagnostic.label(a.0, a.1.describe()).label(b.0, b.1.describe());
-    if bare { diagnostic.help("give the number the unit of the other") } else { diagnostic }
+    diagnostic.help(match bare {
+        true => "give the number the unit of the other",
+        false => "only what is measured alike adds up; `*` and `/` join what differs",
+    })
 }
 
 pub(in crate::check) fn exponent(at: Span) -> Diagnostic {

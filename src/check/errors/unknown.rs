@@ -6,7 +6,8 @@ use crate::color;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::schema::{self, Category, FieldType, familiar};
 use crate::span::Span;
-use crate::syntax::ast::Name;
+use crate::syntax::ast::{Name, Path};
+use crate::units;
 
 /// An unknown name as a value. `setting` is whether it stands in a `--set`.
 pub(in crate::check) fn unknown_value(
@@ -39,6 +40,11 @@ pub(in crate::check) fn unknown_value(
             .help(format!("a text stands in quotes: `\"{text}\"`"))
             .fix(name.span, format!("\"{text}\"")),
         FieldType::Color | FieldType::Paint => unknown_color(name, candidates),
+        FieldType::Tuple(3, units::NONE) if let Some(axis) = axis(text).filter(|_| guess.is_none()) => {
+            diagnostic
+                .help(format!("a direction is written as a triple: `{axis}`"))
+                .offer(format!("replace it with `{axis}`"), vec![(name.span, axis.to_string())])
+        }
         FieldType::Made(Category::Material) if guess.is_none() => {
             let made = familiar::kind(text).and_then(|here| here.name).filter(|kind| is_material(kind));
             let made = made.unwrap_or("diffuse");
@@ -46,6 +52,16 @@ pub(in crate::check) fn unknown_value(
         }
         _ if setting && guess.is_none() => unknown_in_setting(name),
         _ => unknown_name(name, candidates),
+    }
+}
+
+/// The direction that an axis is called by elsewhere.
+fn axis(name: &str) -> Option<&'static str> {
+    match name {
+        "x" | "X" | "right" => Some("(1, 0, 0)"),
+        "y" | "Y" | "up" => Some("(0, 1, 0)"),
+        "z" | "Z" => Some("(0, 0, 1)"),
+        _ => None,
     }
 }
 
@@ -82,6 +98,40 @@ pub(in crate::check) fn declared_inside(diagnostic: &mut Diagnostic, name: &str,
         .at("outside of the body that declares it")
         .label(declared, "known only inside")
         .help("a name is known inside the braces that declare it: declare it outside of them");
+}
+
+/// `new sphere { … }`, `off sphere { … }`: a word before a kind that says elsewhere what is to become of the thing.
+pub(in crate::check) fn before_kind(word: &Name, kind: &Name) -> Option<Diagnostic> {
+    let diagnostic = Diagnostic::new(Code::E0101, format!("unknown kind `{}`", word.text), word.span)
+        .at("no word stands before a kind");
+    let mark = match word.text.as_str() {
+        "new" | "make" | "create" | "add" | "draw" => {
+            let help = format!("leave it out: a thing begins with its kind: `{} {{ … }}`", kind.text);
+            return Some(diagnostic.help(help).fix(Span { end: kind.span.start, ..word.span }, ""));
+        }
+        "off" | "hide" | "hidden" | "disable" | "disabled" | "skip" => "@off",
+        "solo" | "only" => "@solo",
+        _ => return None,
+    };
+    Some(
+        diagnostic
+            .help(format!("a mark begins with `@`: `{mark} {} {{ … }}`", kind.text))
+            .fix(word.span, mark),
+    )
+}
+
+/// `Math.sqrt(4)`: a built-in function of something that there is not.
+pub(in crate::check) fn function_of_nothing(path: &Path) -> Option<Diagnostic> {
+    let [function] = &path.rest[..] else { return None };
+    let signature = by_name(&function.text)?.signature();
+    let (owner, edit) = (&path.first, Span { end: function.span.start, ..path.first.span });
+    let diagnostic = Diagnostic::new(Code::E0101, format!("unknown name `{}`", owner.text), owner.span)
+        .at("not known here")
+        .help(format!("`{}` is called by itself: `{signature}`", function.text));
+    Some(match owner.text.as_str() {
+        "Math" | "math" | "MathF" | "std" | "glm" | "np" | "numpy" => diagnostic.fix(edit, ""),
+        _ => diagnostic.offer(format!("call `{}` by itself", function.text), vec![(edit, String::new())]),
+    })
 }
 
 /// The name of a camera that there is not.
