@@ -176,8 +176,11 @@ pub(super) fn unknown_name(name: &Name, candidates: &[&str]) -> Diagnostic {
 /// A field among statements: at the top level of a file, or in a branch.
 pub(super) fn field_of_nothing(name: &Name, inside: &str) -> Diagnostic {
     let diagnostic = Diagnostic::new(Code::E0301, format!("`{}` belongs to no thing", name.text), name.span)
-        .at("a field stands inside `{}`");
+        .at("a field stands in the braces of a thing");
     match inside {
+        _ if &name.text == "material" => {
+            diagnostic.help("write it inside a thing, or define one for many: `material name = …`")
+        }
         "a file" => diagnostic
             .help("a file holds things such as `sphere { … }`, and definitions such as `let r = 5cm`"),
         word => diagnostic.help(format!(

@@ -71,7 +71,8 @@ impl<'t> Builder<'t> {
         let lost = |name| (Entry::Broken(Broken { name, span }), 0);
         let value = inner.next().expect("a field has a value");
         // `to:` is the name of a field elsewhere, and what it is called here depends on the kind.
-        let field = !top && matches!(name.text.as_str(), "material" | "to" | "in" | "as" | "part");
+        let field =
+            &name.text == "material" || !top && matches!(name.text.as_str(), "to" | "in" | "as" | "part");
         if is_reserved(&name.text) && !field {
             // The `else:` of an `if …:` was explained there.
             if !self.unbraced.get() || &name.text != "else" {
