@@ -135,13 +135,14 @@ fn a_share_that_is_made_twice_at_once_is_one_whole_file() {
     let share = "build room.rt --size 96x72 --samples 60 --quiet --shard 2/3";
     desk.run(&format!("{share} -o one.exr")).expect(0, &[]);
     // As the scripts of a farm ask for it, and without what keeps another one from it.
-    for keeping in ["--checkpoint --checkpoint-every 1spp", ""] {
+    for (keeping, written) in
+        [("--checkpoint --checkpoint-every 1spp", "two.exr.checkpoint"), ("", ".rtc-two.exr.1.tmp")]
+    {
         let start =
             || desk.command(&format!("{share} -o two.exr {keeping}")).stderr(Stdio::piped()).spawn().unwrap();
-        let mut lost = start();
-        std::thread::sleep(Duration::from_millis(150));
-        lost.kill().unwrap();
-        lost.wait().unwrap();
+        // With one thread it takes a while on any machine.
+        let lost = format!("{share} -o two.exr {keeping} -j 1");
+        assert!(desk.kill_after(&lost, written, Duration::ZERO), "it was done before");
         let both: Vec<_> = (0..3).map(|_| start()).collect();
         let both: Vec<_> = both.into_iter().map(|child| ended(child.wait_with_output().unwrap())).collect();
         assert!(both.iter().any(|ended| ended.code == Some(0)), "{both:?}");
