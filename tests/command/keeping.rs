@@ -318,7 +318,7 @@ fn killed_at_any_moment_it_goes_on_and_the_bytes_are_the_same() {
 fn signals_write_a_checkpoint() {
     let desk = desk();
     let [store, elsewhere] = ["store", "elsewhere"].map(|name| desk.path(name));
-    for signal in ["INT", "TERM"] {
+    for signal in ["INT", "TERM", "HUP"] {
         fs::create_dir(&store).unwrap();
         let arguments = "build room.rt --size 48x36 --samples 1000000 -o a.png --checkpoint=store/kept";
         let mut child = desk.command(arguments).stderr(Stdio::piped()).spawn().unwrap();
