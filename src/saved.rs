@@ -9,7 +9,7 @@ mod head;
 mod merge;
 
 use crate::output::{CannotDecode, Channels, Facts, Picture, Words, decode_words, encode_exr, is_exr};
-use crate::render::film::{GATHERED_WORDS, Gathered, MOST_SAMPLES, Pixel, WORDS};
+use crate::render::film::{LIGHT_WORDS, LightSums, MOST_SAMPLES, Pixel, WORDS};
 use crate::render::making::Making;
 use crate::render::{Film, Shown, Window};
 use crate::scene::{Tonemap, identity::Identity};
@@ -59,32 +59,32 @@ pub const CHANNELS: [&str; WORDS + 1] = [
 ];
 
 /// The channels that a picture in the making has besides where its first samples are kept apart ([`Making::early`]): the words of
-/// their light (see [`Gathered::words`]).
-pub const EARLY_CHANNELS: [&str; 2 * GATHERED_WORDS] = [
-    "early.less.red.0",
-    "early.less.red.1",
-    "early.less.green.0",
-    "early.less.green.1",
-    "early.less.blue.0",
-    "early.less.blue.1",
-    "early.less.covered.0",
-    "early.less.covered.1",
-    "early.less.open.0",
-    "early.less.open.1",
-    "early.more.red.0",
-    "early.more.red.1",
-    "early.more.green.0",
-    "early.more.green.1",
-    "early.more.blue.0",
-    "early.more.blue.1",
-    "early.more.covered.0",
-    "early.more.covered.1",
-    "early.more.open.0",
-    "early.more.open.1",
+/// their light (see [`LightSums::words`]), of half the last power of two of them and of that.
+pub const EARLY_CHANNELS: [&str; 2 * LIGHT_WORDS] = [
+    "early.half.red.0",
+    "early.half.red.1",
+    "early.half.green.0",
+    "early.half.green.1",
+    "early.half.blue.0",
+    "early.half.blue.1",
+    "early.half.covered.0",
+    "early.half.covered.1",
+    "early.half.open.0",
+    "early.half.open.1",
+    "early.last.red.0",
+    "early.last.red.1",
+    "early.last.green.0",
+    "early.last.green.1",
+    "early.last.blue.0",
+    "early.last.blue.1",
+    "early.last.covered.0",
+    "early.last.covered.1",
+    "early.last.open.0",
+    "early.last.open.1",
 ];
 
 /// The form of these files. Another number is another form.
-const VERSION: &str = "3";
+const VERSION: &str = "4";
 
 // Attributes. Those of the identity have its names behind this.
 const PREFIX: &str = "rtc.saved.";
@@ -290,8 +290,8 @@ fn words(making: &Making) -> Vec<Words> {
     }
     values.push(making.aims());
     let early = making.early().into_iter().flatten();
-    let word = |lights: &[Gathered], word: usize| lights.iter().map(|light| light.words()[word]).collect();
-    values.extend(early.flat_map(|lights| (0..GATHERED_WORDS).map(move |index| word(lights, index))));
+    let word = |lights: &[LightSums], word: usize| lights.iter().map(|light| light.words()[word]).collect();
+    values.extend(early.flat_map(|lights| (0..LIGHT_WORDS).map(move |index| word(lights, index))));
     let named = channels().zip(values);
     named.map(|(name, values)| Words { name: name.to_string(), values }).collect()
 }
@@ -313,7 +313,7 @@ fn making(
     if early.is_empty() {
         return Some(making);
     }
-    let early: Vec<&[Words]> = early.chunks(GATHERED_WORDS).collect();
+    let early: Vec<&[Words]> = early.chunks(LIGHT_WORDS).collect();
     making.with_early(|which, index| words_at(early.get(which)?, index))
 }
 

@@ -134,8 +134,8 @@ impl Checker<'_> {
 #[cfg(test)]
 mod tests {
     use super::{Declared, TYPES, Type};
-    use crate::schema::PLACED;
-    use crate::syntax::{PLACED_WORDS, RANGED_WORDS, RESERVED, TYPE_WORDS};
+    use crate::schema::{Category, FieldType, KINDS, PLACED};
+    use crate::syntax::{GROUP_WORD, PART_WORDS, PLACED_WORDS, RANGED_WORDS, RESERVED, TYPE_WORDS};
 
     #[test]
     fn the_parser_knows_their_names() {
@@ -145,5 +145,17 @@ mod tests {
         assert!(ranged.eq(RANGED_WORDS));
         let placed = PLACED.iter().map(|field| &field.name).filter(|name| !RESERVED.contains(name));
         assert!(placed.eq(PLACED_WORDS));
+        let groups = KINDS.iter().filter(|kind| kind.category == Category::Group).map(|kind| kind.name);
+        assert!(groups.eq([GROUP_WORD]));
+        let part = |whole, name, ty| match ty {
+            FieldType::Part(part) => Some(([whole, name], part)),
+            _ => None,
+        };
+        let parts: Vec<_> = KINDS
+            .iter()
+            .flat_map(|kind| kind.fields.iter().filter_map(|field| part(kind.name, field.name, field.ty)))
+            .collect();
+        assert!(parts.iter().map(|(words, _)| words).eq(PART_WORDS));
+        assert!(parts.iter().all(|([_, field], part)| field == part), "{parts:?}");
     }
 }

@@ -5,7 +5,7 @@ use super::args::Build;
 use rayon::prelude::*;
 use rt_lang::denoise::{Clean, Noisy, denoise, whole_work};
 use rt_lang::output::{Channels, DENOISED, DENOISED_ALPHA, DENOISED_BY, Picture, Plane};
-use rt_lang::render::film::Gathered;
+use rt_lang::render::film::LightSums;
 use rt_lang::render::first::Guides;
 use rt_lang::render::making::Making;
 use rt_lang::render::{Control, Film, Window};
@@ -71,9 +71,9 @@ pub fn denoised(
     let (film, halves) = (making.film(), making.halves()?);
     let share = halves[0].iter().zip(film.pixels());
     let share = share.map(|(half, all)| half.samples() as f32 / all.samples() as f32).collect();
-    let alphas = |lights: &Vec<Gathered>| lights.iter().map(|light| light.alpha() as f32).collect();
+    let alphas = |lights: &Vec<LightSums>| lights.iter().map(|light| light.alpha() as f32).collect();
     let alpha = picture.alpha.as_ref().map(|_| halves.each_ref().map(alphas));
-    let means = |lights: Vec<Gathered>| -> Vec<[f32; 3]> {
+    let means = |lights: Vec<LightSums>| -> Vec<[f32; 3]> {
         lights.iter().map(|light| light.mean(film.scale()).to_array().map(|v| v as f32)).collect()
     };
     let halves = halves.map(means);

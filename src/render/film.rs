@@ -9,7 +9,7 @@ use crate::develop::display;
 use crate::math::exp2;
 use crate::scene::Tonemap;
 pub(super) use pixel::counted;
-pub use pixel::{GATHERED_WORDS, Gathered, MOST_SAMPLES, Pixel, WORDS};
+pub use pixel::{LIGHT_WORDS, LightSums, MOST_SAMPLES, Pixel, WORDS};
 use rayon::prelude::*;
 
 /// A rectangle of pixels in the full picture, (0, 0) at its top left.

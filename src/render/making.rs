@@ -4,7 +4,7 @@
 //! of one that was made at once.
 
 use super::control::{Cancelled, Control};
-use super::film::{Film, GATHERED_WORDS, Gathered, Window};
+use super::film::{Film, LIGHT_WORDS, LightSums, Window};
 use super::halt::{BLOCK, Limit, Limits, noisy};
 use super::sums::{self, Sums};
 use super::{PASS, Prepass, Rendered, Shown, Tracer};
@@ -23,7 +23,7 @@ const FIRST_PATHS: u64 = 1 << 19;
 pub struct Making {
     film: Film,
     /// What the film's light was at two numbers of samples, for who asks: see [`Making::in_halves`].
-    early: Option<[Vec<Gathered>; 2]>,
+    early: Option<[Vec<LightSums>; 2]>,
     /// The number of each pixel's first sample.
     start: u32,
     /// How what is shown was when it was last judged where samples go, if it was.
@@ -68,12 +68,12 @@ impl Making {
     /// from a third to two thirds of all, whenever the picture stops. Every other sample would tell too much noise: neighbours
     /// in the sequence are each other's opposites. It takes two thirds as much memory again.
     pub fn in_halves(self) -> Making {
-        let none = vec![Gathered::default(); self.film.pixels().len()];
+        let none = vec![LightSums::default(); self.film.pixels().len()];
         Making { early: Some([none.clone(), none]), ..self }
     }
 
     /// The same with what [`Making::early`] was, by what gives the words of each. None where its first samples cannot be so.
-    pub fn with_early(self, words: impl Fn(usize, usize) -> Option<[u32; GATHERED_WORDS]>) -> Option<Making> {
+    pub fn with_early(self, words: impl Fn(usize, usize) -> Option<[u32; LIGHT_WORDS]>) -> Option<Making> {
         Some(Making { early: Some(sums::early(&self.film, words)?), ..self })
     }
 
@@ -105,12 +105,12 @@ impl Making {
     }
 
     /// The light of each pixel's first samples: of half the last power of two of them, and of that. None unless [`Making::in_halves`].
-    pub fn early(&self) -> Option<&[Vec<Gathered>; 2]> {
+    pub fn early(&self) -> Option<&[Vec<LightSums>; 2]> {
         self.early.as_ref()
     }
 
     /// The light of each pixel's first samples, about half of them, and of the others; none unless [`Making::in_halves`].
-    pub fn halves(&self) -> Option<[Vec<Gathered>; 2]> {
+    pub fn halves(&self) -> Option<[Vec<LightSums>; 2]> {
         sums::halved(&self.film, self.early()?)
     }
 

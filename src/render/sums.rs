@@ -1,13 +1,13 @@
 //! Sums of samples, and what they were on the way.
 
-use super::film::{Film, GATHERED_WORDS, Gathered, Pixel, Window};
+use super::film::{Film, LIGHT_WORDS, LightSums, Pixel, Window};
 
 /// Where samples are added up.
 pub(super) struct Sums<'f> {
     /// All of them.
     pub(super) film: &'f mut Film,
     /// What they were at two numbers of samples, if that is wanted: see [`Making::in_halves`](super::making::Making::in_halves).
-    pub(super) early: Option<&'f mut [Vec<Gathered>; 2]>,
+    pub(super) early: Option<&'f mut [Vec<LightSums>; 2]>,
 }
 
 impl Sums<'_> {
@@ -26,9 +26,9 @@ impl Sums<'_> {
         let window = film.window();
         let rows = (tile.y..tile.y + tile.height).map(|y| window.index(tile.x, y));
         let rows = rows.map(|start| start..start + tile.width as usize);
-        let keep = |lights: &mut [Gathered], film: &Film| {
+        let keep = |lights: &mut [LightSums], film: &Film| {
             for index in rows.clone().flatten() {
-                lights[index] = *film.pixels()[index].gathered();
+                lights[index] = *film.pixels()[index].light();
             }
         };
         let mut next =
@@ -58,13 +58,13 @@ pub(super) fn cuts(samples: u32) -> [u32; 2] {
 /// such light cannot be that of these samples.
 pub(super) fn early(
     film: &Film,
-    words: impl Fn(usize, usize) -> Option<[u32; GATHERED_WORDS]>,
-) -> Option<[Vec<Gathered>; 2]> {
-    let of = |which: usize| -> Option<Vec<Gathered>> {
+    words: impl Fn(usize, usize) -> Option<[u32; LIGHT_WORDS]>,
+) -> Option<[Vec<LightSums>; 2]> {
+    let of = |which: usize| -> Option<Vec<LightSums>> {
         let light = |(index, pixel): (usize, &Pixel)| {
             let samples = cuts(pixel.samples())[which].min(pixel.samples());
-            let light = Gathered::from_words(words(which, index)?, samples)?;
-            pixel.gathered().without(&light).map(|_| light)
+            let light = LightSums::from_words(words(which, index)?, samples)?;
+            pixel.light().without(&light).map(|_| light)
         };
         film.pixels().iter().enumerate().map(light).collect()
     };
@@ -73,13 +73,13 @@ pub(super) fn early(
 
 /// The light of each pixel in two parts: that of its first samples, of both numbers of them the one that is nearer to half of all,
 /// and that of the others. None where they are none of these samples.
-pub(super) fn halved(film: &Film, [first, second]: &[Vec<Gathered>; 2]) -> Option<[Vec<Gathered>; 2]> {
-    let halved = |((pixel, first), second): ((&Pixel, &Gathered), &Gathered)| {
-        let from_half = |light: &Gathered| (2 * light.samples()).abs_diff(pixel.samples());
+pub(super) fn halved(film: &Film, [first, second]: &[Vec<LightSums>; 2]) -> Option<[Vec<LightSums>; 2]> {
+    let halved = |((pixel, first), second): ((&Pixel, &LightSums), &LightSums)| {
+        let from_half = |light: &LightSums| (2 * light.samples()).abs_diff(pixel.samples());
         let some = if from_half(first) <= from_half(second) { first } else { second };
-        Some((*some, pixel.gathered().without(some)?))
+        Some((*some, pixel.light().without(some)?))
     };
-    let halved: Option<(Vec<Gathered>, Vec<Gathered>)> =
+    let halved: Option<(Vec<LightSums>, Vec<LightSums>)> =
         film.pixels().iter().zip(first).zip(second).map(halved).collect();
     halved.map(|(some, others)| [some, others])
 }

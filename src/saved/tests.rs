@@ -41,10 +41,10 @@ fn saved(share: Option<Share>, samples: Range<u32>, aim: u32) -> Saved {
     Saved { subject: Subject { program: "rtc 0".into(), identity: identity(), share }, making, facts }
 }
 
-/// The same with its first samples apart: of `more`, and of `less`.
-fn in_halves(saved: Saved, less: u32, more: u32) -> Saved {
-    let early = [less, more].map(|samples| film(0..samples));
-    let words = |which: usize, index: usize| Some(early[which].pixels()[index].gathered().words());
+/// The same with its first samples apart: `half` the last power of two of them, and that.
+fn in_halves(saved: Saved, half: u32, last: u32) -> Saved {
+    let early = [half, last].map(|samples| film(0..samples));
+    let words = |which: usize, index: usize| Some(early[which].pixels()[index].light().words());
     let making = saved.making.with_early(words).expect("they are among its samples");
     Saved { making, ..saved }
 }
@@ -96,12 +96,12 @@ fn damaged_files_are_refused() {
     }
     let old = saved(None, 0..3, 3);
     let mut texts = old.subject.texts(&old.making);
-    texts.iter_mut().filter(|(name, _)| name == FORM).for_each(|(_, value)| *value = "2".into());
+    texts.iter_mut().filter(|(name, _)| name == FORM).for_each(|(_, value)| *value = "3".into());
     let channels = Channels { words: words(&old.making), texts, ..Channels::default() };
     let file = encode_exr(&picture(&film(0..1), &identity()), &Facts::unknown(), channels)
         .expect("it can be written");
     let why = Saved::decode(&file).expect_err("it is of an earlier form").to_string();
-    assert!(why.contains("in form 2, and this version of rtc reads form 3 alone"), "{why}");
+    assert!(why.contains("in form 3, and this version of rtc reads form 4 alone"), "{why}");
     let plain = encode_exr(&picture(&film(0..1), &identity()), &Facts::unknown(), Channels::default());
     let why = Saved::decode(&plain.expect("it can be written")).expect_err("it has no sums");
     assert!(why.to_string().contains("no exact sums"), "{why}");
@@ -234,10 +234,10 @@ fn sums_that_cannot_be_are_refused() {
 
 #[test]
 fn first_samples_that_are_none_of_all_are_refused() {
-    let with = |change: &dyn Fn(&mut [u32; GATHERED_WORDS])| {
+    let with = |change: &dyn Fn(&mut [u32; LIGHT_WORDS])| {
         let early = [2, 4].map(|samples| film(0..samples));
         let words = |which: usize, index: usize| {
-            let mut words = early[which].pixels()[index].gathered().words();
+            let mut words = early[which].pixels()[index].light().words();
             change(&mut words);
             Some(words)
         };
@@ -245,7 +245,7 @@ fn first_samples_that_are_none_of_all_are_refused() {
     };
     assert!(with(&|_| ()).is_some());
     // Of each sum the upper half: more than 4 samples can have, and so little that the fifth would have too much.
-    for word in (1..GATHERED_WORDS).step_by(2) {
+    for word in (1..LIGHT_WORDS).step_by(2) {
         for wrong in [0x7fff_ffff, 0x8000_0000, 5 << 10, (-5i32 << 10) as u32] {
             assert_eq!(with(&|words| words[word] = wrong), None, "word {word}: {wrong:x}");
         }

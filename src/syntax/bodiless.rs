@@ -8,18 +8,19 @@ use crate::span::Span;
 
 impl Builder<'_> {
     /// `sphere ball`: two words in a body that holds things, which are one without its own. A group has fields too, and
-    /// the lens of a camera is written in both ways; in other things the words are a field.
+    /// what only stands in its body is written in both ways; in other things the words are a field.
     pub(super) fn thing_or_field(&self, word: &Name, value: &Node, span: Span, top: bool) -> Option<Entry> {
         let second = value.as_str().trim_ascii_end();
         let holds_things = self.declares.get() || self.grouped.get();
         let is_field = is_reserved(&word.text) || PLACED_WORDS.contains(&word.text.as_str());
-        if top || !is_name(second) || is_field || !(holds_things || &word.text == "lens") {
+        let part = self.holds_part.get().filter(|[_, part]| word.text == *part);
+        if top || !is_name(second) || is_field || !(holds_things || part.is_some()) {
             return None;
         }
         let name = Name { text: second.into(), span: self.trimmed(value) };
         self.report(match self.declares.get() {
             true => errors::missing_body(&format!("{} {second}", word.text), name.span),
-            false => statements::thing_or_field(word, &name),
+            false => statements::thing_or_field(word, &name, part),
         });
         Some(Entry::Broken(Broken { name: Some(name), span }))
     }

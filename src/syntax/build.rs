@@ -7,7 +7,7 @@ use super::ast::{
 use super::cut::Item;
 use super::errors::{self, Held, Sink, statements};
 use super::slips::{ends_invalid, spoil};
-use super::{BLANKS, angled, docs, statement, value};
+use super::{BLANKS, GROUP_WORD, PART_WORDS, angled, docs, statement, value};
 use crate::span::{SourceId, Span};
 use pest::iterators::{Pair, Pairs};
 use smol_str::SmolStr;
@@ -63,6 +63,8 @@ pub(super) struct Builder<'t> {
     pub(super) declares: Cell<bool>,
     /// Whether it is in a group, outside of the things in it.
     pub(super) grouped: Cell<bool>,
+    /// The kind of what it is directly in, and of what only stands in that, where something does: of [`PART_WORDS`].
+    pub(super) holds_part: Cell<Option<[&'static str; 2]>>,
     /// Whether no field can stand where it is: at the top level, also in what repeats or chooses there.
     top: Cell<bool>,
     /// What was to be fields of the body that is being read, and stands in parentheses that were never closed.
@@ -82,6 +84,7 @@ impl<'t> Builder<'t> {
             unbraced: Cell::new(false),
             declares: Cell::new(true),
             grouped: Cell::new(false),
+            holds_part: Cell::new(None),
             top: Cell::new(true),
             swallowed: RefCell::default(),
         }
@@ -360,10 +363,13 @@ impl<'t> Builder<'t> {
     pub(super) fn construct(&self, mut kind: Vec<Name>, body: Node<'t>) -> Deep<Option<Construct>> {
         let (known, around) = (self.reported(), self.foreign.take());
         let declares = self.declares.replace(false);
-        let grouped = self.grouped.replace(&kind[0].text == "group");
+        let word = if let [word] = &kind[..] { word.text.as_str() } else { "" };
+        let grouped = self.grouped.replace(word == GROUP_WORD);
+        let part = self.holds_part.replace(PART_WORDS.iter().find(|[whole, _]| word == *whole).copied());
         let (body, depth) = self.body(body);
         self.declares.set(declares);
         self.grouped.set(grouped);
+        self.holds_part.set(part);
         if let Some(angled) = self.foreign.replace(around) {
             self.sink.borrow_mut().truncate(known);
             self.report(errors::foreign_body(&kind[0].text, kind[0].span, angled));

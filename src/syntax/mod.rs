@@ -95,6 +95,13 @@ pub const RANGED_WORDS: &[&str] = &["number", "int", "angle", "power", "radiance
 /// the first is one of them are no thing. What they mean is not known here.
 pub const PLACED_WORDS: &[&str] = &["at", "place", "grain"];
 
+/// The kind of things whose bodies hold things, and fields too.
+pub const GROUP_WORD: &str = "group";
+
+/// The kinds of things that each only stand within another one, behind the kind of that. It has a field of the same name, so that
+/// there two words of which the first is it are either. What they mean is not known here.
+pub const PART_WORDS: &[[&str; 2]] = &[["camera", "lens"]];
+
 /// White space within a line, as the grammar has it. With the line end it is what Rust calls ASCII white space.
 const BLANKS: [char; 4] = [' ', '\t', '\r', '\u{c}'];
 

@@ -1,4 +1,7 @@
-//! Samples that are kept and gone on with, shares of them, and when a picture is done.
+//! Samples that are kept and gone on with.
+
+mod limits;
+mod shares;
 
 use super::{Desk, assert_same};
 use std::fs;
@@ -14,13 +17,6 @@ plane { at: (0, -1, 0)m }
 light { at: (2, 4, 3)m, radius: 30cm, power: 90W }
 ";
 
-/// One in which noise is soon gone.
-const CALM: &str = "
-sphere { radius: 1m }
-plane { at: (0, -1, 0)m }
-light { at: (2, 4, 3)m, radius: 1m, power: 90W }
-";
-
 fn desk() -> Desk {
     let desk = Desk::new();
     desk.put("room.rt", ROOM);
@@ -30,202 +26,6 @@ fn desk() -> Desk {
 /// Small enough to be over soon.
 fn build(desk: &Desk, rest: &str) -> super::Ended {
     desk.run(&format!("build room.rt --size 48x36 --quiet {rest}"))
-}
-
-#[test]
-fn shares_put_together_are_the_picture_of_one_machine() {
-    let desk = desk();
-    build(&desk, "--samples 10 -o one.exr -o one.png -j 1").expect(0, &[]);
-    for index in 1..=3 {
-        build(&desk, &format!("--samples 10 --shard {index}/3 -o part{index}.exr")).expect(0, &[]);
-    }
-    desk.run("merge part3.exr part1.exr part2.exr -o all.exr -o all.png")
-        .expect(0, &["all.exr, all.png: 48×36, 10 samples", "of 3 shares"]);
-    assert_same(&desk.path("one.exr"), &desk.path("all.exr"));
-    assert_same(&desk.path("one.png"), &desk.path("all.png"));
-
-    desk.run("merge part1.exr part3.exr -o no.exr").expect(2, &["share 2 of 3 is missing", "--partial"]);
-    desk.run("merge part1.exr -o no.exr").expect(2, &["shares 2, 3 of 3 are missing"]);
-    desk.run("merge --partial part1.exr part3.exr -o look.png")
-        .expect(0, &["share 2 of 3 is missing", "7 samples"]);
-    build(&desk, "--samples 10 --shard 1/2 -o part1.exr")
-        .expect(2, &["`part1.exr` is share 1 of 3, and would be replaced by share 1 of 2", "--shard 1/3"]);
-    build(&desk, "--samples 10 --shard 1/3 -o part1.exr").expect(0, &[]);
-    build(&desk, "--samples 10 --shard 1/2 -o one.exr -o half.exr").expect(0, &[]);
-    build(&desk, "--samples 10 -o one.exr").expect(0, &[]);
-    // What lacks samples says so, and what has all of them is like any picture.
-    desk.run("merge --partial part1.exr part3.exr -o some.exr -q").expect(0, &[]);
-    desk.run("merge --partial part2.exr -o look.png").expect(0, &["of 1 share\n"]);
-    let says = |file: &str| desk.get(file).windows(10).any(|bytes| bytes == b"rtc.shares");
-    assert_eq!((says("some.exr"), says("all.exr")), (true, false));
-    for (flag, said) in
-        [("--exposure 4", "(this share: 4)"), ("--tonemap none", "`--tonemap neutral` (this share: none)")]
-    {
-        build(&desk, &format!("--samples 10 --shard 2/3 {flag} -o foreign.exr")).expect(0, &[]);
-        for order in ["part1.exr foreign.exr part3.exr", "part3.exr part1.exr foreign.exr"] {
-            desk.run(&format!("merge {order} -o no.exr"))
-                .expect(2, &["`foreign.exr` does not go with", said]);
-        }
-    }
-    fs::copy(desk.path("part2.exr"), desk.path("again.exr")).unwrap();
-    desk.run("merge part1.exr part2.exr again.exr -o no.exr")
-        .expect(2, &["`again.exr` is share 2 of 3, and so is `part2.exr`"]);
-    build(&desk, "--samples 10 --shard 2/3 --seed 9 -o foreign.exr").expect(0, &[]);
-    desk.run("merge part1.exr foreign.exr part3.exr -o no.exr")
-        .expect(2, &["`foreign.exr` does not go with `part1.exr` and 1 more", "`--seed 0` (this share: 9)"]);
-    // The odd one is that which most do not go with, wherever it stands; of two that is nobody.
-    desk.run("merge --partial foreign.exr part1.exr part3.exr -o look.png").expect(
-        0,
-        &["warning: `foreign.exr` does not go with", "it is left out", "7 samples", "of 2 shares"],
-    );
-    let quiet = desk.run("merge --partial foreign.exr part1.exr part3.exr -o look.png -q");
-    assert_eq!((quiet.code, quiet.stderr.as_str()), (Some(0), ""));
-    desk.run("merge --partial foreign.exr part1.exr -o no.exr")
-        .expect(2, &["`foreign.exr` and `part1.exr` are shares of different pictures"]);
-    // Given again and again it is one share.
-    desk.run("merge --partial part1.exr part3.exr foreign.exr foreign.exr foreign.exr -o look.png")
-        .expect(0, &["`foreign.exr` does not go with", "7 samples", "of 2 shares"]);
-    desk.run("merge one.exr -o no.exr")
-        .expect(2, &["`one.exr` is a picture alone", "have `--partial` leave it out"]);
-    desk.run("merge room.rt -o no.exr").expect(
-        2,
-        &["`room.rt` is no checkpoint and no share of a picture: it is a text", "`rtc build --shard I/N`"],
-    );
-    fs::write(desk.path("torn.exr"), &desk.get("part2.exr")[..9000]).unwrap();
-    desk.run("merge part1.exr torn.exr part3.exr -o no.exr")
-        .expect(2, &["`torn.exr` cannot be read: it is damaged or cut short"]);
-    // Of many files it is said which one is not as it should be, wherever it stands.
-    let mut spoilt = desk.get("part2.exr");
-    let middle = spoilt.len() / 2;
-    spoilt[middle] ^= 1;
-    desk.put("spoilt.exr", spoilt);
-    for wrong in ["torn.exr", "spoilt.exr", "one.exr", "missing.exr"] {
-        for order in [format!("{wrong} part1.exr part3.exr"), format!("part1.exr part3.exr {wrong}")] {
-            desk.run(&format!("merge {order} -o no.exr")).expect(2, &[&format!("`{wrong}`")]);
-        }
-    }
-    desk.run("merge --partial part1.exr torn.exr part3.exr -o look.png").expect(0, &["it is left out"]);
-    assert!(!desk.names().contains(&"no.exr".to_string()));
-}
-
-/// A file with another value of an attribute, whose name and type these are.
-#[cfg(unix)]
-fn with_attribute(file: &[u8], name: &str, value: &[u8]) -> Vec<u8> {
-    let name = name.as_bytes();
-    let at = file.windows(name.len()).position(|bytes| bytes == name).unwrap() + name.len();
-    let length = u32::from_le_bytes(*file[at..].first_chunk().unwrap()) as usize;
-    [&file[..at], &(value.len() as u32).to_le_bytes(), value, &file[at + 4 + length..]].concat()
-}
-
-#[cfg(unix)]
-#[test]
-fn a_hostile_file_is_refused_by_its_name_within_little_memory() {
-    let desk = desk();
-    let flags = "build room.rt --size 10000x10000 --crop 0,0,4,4 --samples 2 --quiet";
-    desk.run(&format!("{flags} --shard 1/2 -o part1.exr")).expect(0, &[]);
-    desk.run(&format!("{flags} --checkpoint=kept -o some.exr")).expect(0, &[]);
-    let window = |side: u32| [0, 0, side - 1, side - 1].map(u32::to_le_bytes).concat();
-    for kept in ["part1.exr", "kept"] {
-        let data = |file: &[u8], side| with_attribute(file, "dataWindow\0box2i\0", &window(side));
-        // As many pixels as there may be, in few bytes; and more than there may be.
-        let all = with_attribute(&desk.get(kept), "rtc.saved.crop\0string\0", b"0,0,10000,10000");
-        desk.put("all", data(&all, 10_000));
-        let display = with_attribute(&desk.get(kept), "displayWindow\0box2i\0", &window(32_768));
-        desk.put("billion", data(&display, 32_768));
-        // More bytes than memory, of which nothing is told.
-        fs::File::create(desk.path("empty")).and_then(|file| file.set_len(8 << 30)).unwrap();
-        let hostiles = [
-            ("all", "cannot hold"),
-            ("billion", "1073741824 pixels"),
-            ("empty", "is no checkpoint and no share"),
-        ];
-        for (hostile, said) in hostiles {
-            let merge = format!("merge part1.exr {hostile} -o no.exr");
-            let resume = format!(
-                "{} --crop 0,0,10000,10000 --resume={hostile} -o no.exr",
-                flags.replace("--crop 0,0,4,4", "")
-            );
-            for arguments in [merge, resume] {
-                let capped = format!("ulimit -v 4194304; exec '{}' {arguments}", env!("CARGO_BIN_EXE_rtc"));
-                let mut command = Command::new("sh");
-                command.args(["-c", &capped]).current_dir(desk.path("."));
-                super::ended(command.output().unwrap()).expect(2, &[&format!("`{hostile}`"), said]);
-            }
-        }
-    }
-}
-
-#[test]
-fn a_share_that_is_made_twice_at_once_is_one_whole_file() {
-    let desk = desk();
-    let share = "build room.rt --size 96x72 --samples 60 --quiet --shard 2/3";
-    desk.run(&format!("{share} -o one.exr")).expect(0, &[]);
-    // As the scripts of a farm ask for it, and without what keeps another one from it.
-    for keeping in ["--checkpoint --checkpoint-every 1spp", ""] {
-        let start =
-            || desk.command(&format!("{share} -o two.exr {keeping}")).stderr(Stdio::piped()).spawn().unwrap();
-        let mut lost = start();
-        std::thread::sleep(Duration::from_millis(150));
-        lost.kill().unwrap();
-        lost.wait().unwrap();
-        let both: Vec<_> = (0..3).map(|_| start()).collect();
-        let both: Vec<_> =
-            both.into_iter().map(|child| super::ended(child.wait_with_output().unwrap())).collect();
-        assert!(both.iter().any(|ended| ended.code == Some(0)), "{both:?}");
-        for ended in both.iter().filter(|ended| ended.code != Some(0)) {
-            ended.expect(2, &["`two.exr", "another process is writing it"]);
-        }
-        assert_same(&desk.path("one.exr"), &desk.path("two.exr"));
-        desk.run(&format!("{share} -o two.exr {keeping}")).expect(0, &[]);
-        assert_same(&desk.path("one.exr"), &desk.path("two.exr"));
-        fs::remove_file(desk.path("two.exr")).unwrap();
-    }
-}
-
-#[test]
-fn a_share_needs_a_number_of_samples_and_an_exr() {
-    let desk = desk();
-    let refused = |rest: &str, said: &str| build(&desk, rest).expect(2, &[said]);
-    refused("--shard 1/2 --noise 1% -o a.exr", "`--shard` and `--noise` do not go together");
-    refused("--shard 1/2 --time 1s -o a.exr", "`--shard` and `--time` do not go together");
-    refused("--shard 1/2 --aov depth -o a.exr", "`--shard` and `--aov` do not go together");
-    refused("--shard 1/2 -o a.png", "a share of a picture is an EXR");
-    refused("--shard 1/2", "a share of a picture is an EXR");
-    refused("--shard 1/9 --samples 4 -o a.exr", "cannot be divided into 9 shares");
-    refused("--shard 0/2 -o a.exr", "counted from 1 to 2");
-    refused("--shard auto -o a.exr", "this is none");
-    desk.put("noisy.rt", format!("{ROOM}render {{ noise: 5% }}\n"));
-    desk.run("build noisy.rt --shard 1/2 -o a.exr").expect(2, &["the scene asks for a noise", "--samples N"]);
-
-    let by_slurm = |id: &str, count: &str, max: &str| {
-        let mut command = desk.command("build room.rt --size 8x6 --samples 4 --quiet --shard auto -o a.exr");
-        let variables = [("ID", id), ("COUNT", count), ("MIN", "1"), ("MAX", max)];
-        command.envs(variables.map(|(name, value)| (format!("SLURM_ARRAY_TASK_{name}"), value)));
-        super::ended(command.output().unwrap())
-    };
-    by_slurm("2", "2", "2").expect(0, &[]);
-    desk.run("merge a.exr -o b.exr").expect(2, &["share 1 of 2 is missing"]);
-    by_slurm("2", "1", "2").expect(2, &["auto/N"]);
-}
-
-#[test]
-fn a_noise_target_goes_on_only_as_it_was_to_be_shown() {
-    let desk = desk();
-    desk.put("room.rt", CALM);
-    let noise = |rest: &str| {
-        build(&desk, &format!("--noise 2% --samples 512 --min-samples 4 -o a.exr --checkpoint {rest}"))
-    };
-    noise("--exposure 2").expect(0, &[]);
-    noise("--exposure 1").expect(2, &["`--exposure 1` (kept: 2)", "--resume=never"]);
-    noise("--exposure 2 --tonemap none").expect(2, &["`--tonemap none` (kept: neutral)"]);
-    noise("--exposure 2").expect(0, &[]);
-    // A number of samples does not ask how they are shown.
-    build(&desk, "--samples 600 --exposure 1 -o a.exr --checkpoint").expect(0, &[]);
-    build(&desk, "--samples 600 --exposure 1 -o b.exr").expect(0, &[]);
-    assert_same(&desk.path("a.exr"), &desk.path("b.exr"));
-    noise("--exposure 1").expect(2, &["no more than 512 are asked for: `--samples 600` goes on"]);
-    // Where all pixels have as many, none was chosen.
-    build(&desk, "--noise 2% --samples 700 --exposure 1 -o a.exr --checkpoint").expect(0, &[]);
 }
 
 #[test]
@@ -518,7 +318,7 @@ fn killed_at_any_moment_it_goes_on_and_the_bytes_are_the_same() {
 fn signals_write_a_checkpoint() {
     let desk = desk();
     let [store, elsewhere] = ["store", "elsewhere"].map(|name| desk.path(name));
-    for signal in ["INT", "TERM"] {
+    for signal in ["INT", "TERM", "HUP"] {
         fs::create_dir(&store).unwrap();
         let arguments = "build room.rt --size 48x36 --samples 1000000 -o a.png --checkpoint=store/kept";
         let mut child = desk.command(arguments).stderr(Stdio::piped()).spawn().unwrap();
@@ -551,46 +351,5 @@ fn signals_write_a_checkpoint() {
         fs::remove_dir(&store).unwrap();
         fs::remove_file(desk.path("a.png")).unwrap();
         assert_eq!(desk.names(), ["ball.rt", "room.rt"]);
-    }
-}
-
-#[test]
-fn a_picture_stops_at_the_first_limit_and_says_at_which() {
-    let desk = desk();
-    desk.put("room.rt", CALM);
-    let run = |rest: &str| desk.run(&format!("build room.rt --size 48x36 {rest}"));
-    run("--checkpoint-every 9spp -o a.exr")
-        .expect(2, &["`--checkpoint-every` is for work that is kept", "keep it with"]);
-    desk.run("build room.rt --size 4x3 --noise 0.01% --min-samples 70000 -o a.exr")
-        .expect(0, &["70000 samples", "W0701"]);
-    run("--noise 1.5% -o a.exr -j 1").expect(0, &["noise", "as wanted"]);
-    run("--noise 1.5% -o b.exr -j 2").expect(0, &["as wanted"]);
-    assert_same(&desk.path("a.exr"), &desk.path("b.exr"));
-    let stopped = run("--noise 0.01% --samples 20 -o c.exr");
-    stopped.expect(0, &["20 samples (noise"]);
-    assert!(!stopped.stderr.contains("W0701"), "who limits the samples knows: {}", stopped.stderr);
-    run("--noise 50% --min-samples 40 -o c.exr").expect(0, &["40 samples"]);
-    run("--min-samples 40 --samples 50 -o c.exr").expect(2, &["`--min-samples` is for a noise target"]);
-    let timed = run("--time 300ms -o timed.png");
-    timed.expect(0, &["stopped by the time"]);
-    let (_, after) = timed.stderr.split_once("again by `--samples ").unwrap();
-    let samples = after.split_once('`').unwrap().0;
-    run(&format!("--samples {samples} -o again.png")).expect(0, &[]);
-    assert_same(&desk.path("timed.png"), &desk.path("again.png"));
-    run("--time 1h --samples 3 -o c.exr").expect(0, &["3 samples"]);
-}
-
-#[test]
-fn a_noise_target_that_was_put_aside_goes_on_to_the_same_bytes() {
-    let desk = desk();
-    desk.put("room.rt", CALM);
-    let run = |rest: &str| build(&desk, &format!("--noise 1.5% {rest}")).expect(0, &[]);
-    run("-o whole.exr");
-    // In the middle of a rung, and at its end.
-    for samples in [5, 64, 96, 128] {
-        build(&desk, &format!("--noise 1.5% --samples {samples} -o a.exr --checkpoint=kept")).expect(0, &[]);
-        run("-o a.exr --checkpoint=kept");
-        assert_same(&desk.path("whole.exr"), &desk.path("a.exr"));
-        fs::remove_file(desk.path("kept")).unwrap();
     }
 }

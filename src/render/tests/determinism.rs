@@ -1,7 +1,7 @@
 //! The same bits whatever runs it, and control over it.
 
 use super::*;
-use crate::render::film::{Gathered, Pixel};
+use crate::render::film::{LightSums, Pixel};
 use crate::render::halt::Limits;
 use crate::render::making::Making;
 use std::sync::Arc;
@@ -137,7 +137,7 @@ fn halves_of_the_samples_add_up_to_the_whole() {
         let add = |range| {
             let mut film = Film::new(window, 65_536.0);
             tracer.add_samples(&mut film, range, &Control::new()).expect("nobody cancels");
-            let lights: Vec<Gathered> = film.pixels().iter().map(|pixel| *pixel.gathered()).collect();
+            let lights: Vec<LightSums> = film.pixels().iter().map(|pixel| *pixel.light()).collect();
             lights
         };
         let [_, samples] = halved.samples();
@@ -146,8 +146,8 @@ fn halves_of_the_samples_add_up_to_the_whole() {
             assert_eq!(others, add(first..samples), "the others of {samples}");
         }
         let left =
-            |(all, some): (&Pixel, &Gathered)| all.gathered().without(some).expect("they are among them");
-        assert_eq!(others, whole.film().pixels().iter().zip(&some).map(left).collect::<Vec<Gathered>>());
+            |(all, some): (&Pixel, &LightSums)| all.light().without(some).expect("they are among them");
+        assert_eq!(others, whole.film().pixels().iter().zip(&some).map(left).collect::<Vec<LightSums>>());
     }
 }
 

@@ -374,12 +374,13 @@ pub(in crate::syntax) fn marks_nothing(mark: &Prefix, written: &str) -> Diagnost
         .help(format!("write it before a thing or a definition: `{whole} sphere {{ … }}`"))
 }
 
-/// `post left` in a group, where a part may be called `post`, and a field too.
-pub(in crate::syntax) fn thing_or_field(word: &Name, second: &Name) -> Diagnostic {
+/// `post left` in a group, where a part may be called `post`, and a field too; or `lens wide` in a camera, whose kind and that
+/// of its part are given.
+pub(in crate::syntax) fn thing_or_field(word: &Name, second: &Name, part: Option<[&str; 2]>) -> Diagnostic {
     let (word, second, span) = (&word.text, &second.text, word.span.to(second.span));
-    let thing = match word.as_str() {
-        "lens" => "`lens { … }` for the lens of a camera".to_string(),
-        _ => format!("`{word} {second} {{ … }}` for a thing"),
+    let thing = match part {
+        Some([whole, part]) => format!("`{part} {{ … }}` for the {part} of a {whole}"),
+        None => format!("`{word} {second} {{ … }}` for a thing"),
     };
     Diagnostic::new(Code::E0001, format!("`{word} {second}` has no body"), span)
         .at("`{` is missing behind this, or `:` within")

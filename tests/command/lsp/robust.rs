@@ -5,6 +5,8 @@ use super::client::{Client, PATIENCE};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::process::{Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicI32, Ordering};
 use std::time::{Duration, Instant};
 
 const BAD: &str = "sphere { radius: 8deg }\n";
@@ -93,11 +95,21 @@ fn who_holds_the_pipes_of_a_client_that_is_gone_does_not_keep_the_server() {
         write!(input, "Content-Length: {}\r\n\r\n{body}", body.len()).is_ok()
     };
     // More answers than pipes and queues hold, which nobody reads.
+    let sent = Arc::new(AtomicI32::new(0));
+    let counts = sent.clone();
     let floods = std::thread::spawn(move || {
         assert!(send(0, "initialize", &process));
-        (1..).find(|id| !send(*id, "none", &Value::Null))
+        (1..).find(|id| {
+            counts.store(*id, Ordering::Relaxed);
+            !send(*id, "none", &Value::Null)
+        })
     });
-    std::thread::sleep(Duration::from_millis(500));
+    // Until no more can be sent.
+    let mut before = 0;
+    while before == 0 || before != sent.load(Ordering::Relaxed) {
+        before = sent.load(Ordering::Relaxed);
+        std::thread::sleep(Duration::from_millis(200));
+    }
     editor.kill().unwrap();
     editor.wait().unwrap();
     let start = Instant::now();
