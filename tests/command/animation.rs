@@ -327,6 +327,8 @@ fn ffmpeg_gets_the_frames_and_the_film_is_whole_or_not_there() {
     run("-o film.mp4").expect(2, &["ffmpeg could not make the film: no such encoder"]);
     fake_ffmpeg(&desk, "exit 3");
     run("-o film.mp4").expect(2, &["ffmpeg could not make the film: exit status: 3"]);
+    fake_ffmpeg(&desk, "cat > /dev/null");
+    run("-o film.mp4").expect(2, &["ffmpeg could not make the film: it has written nothing"]);
     assert_eq!(desk.get("film.mp4"), b"the film of yesterday");
     let names = desk.names();
     assert!(!names.iter().any(|name| name.ends_with(".tmp") || name == "odd.mp4"), "{names:?}");
