@@ -54,8 +54,10 @@ impl Cutter<'_> {
         let next = self.byte(self.at + 1);
         match self.bytes[self.at] {
             b'#' => {
-                let blank = matches!(next, b' ' | b'\t' | b'\x0c' | b'#' | b'!');
-                entry || blank && self.last == Last::Operand && self.splits
+                // A comment of ours stands apart when it is laid out.
+                let comments = ["//", "/*"].iter().any(|sign| self.text[self.at + 1..].starts_with(sign));
+                let apart = comments || matches!(next, b' ' | b'\t' | b'\x0c' | b'#' | b'!');
+                entry || apart && self.last == Last::Operand && self.splits
             }
             _ => entry && next == b'-',
         }
