@@ -71,7 +71,12 @@ impl<'t> Builder<'t> {
         let lost = |name| (Entry::Broken(Broken { name, span }), 0);
         let value = inner.next().expect("a field has a value");
         // `to:` is the name of a field elsewhere, and what it is called here depends on the kind.
-        let field = !top && matches!(name.text.as_str(), "material" | "to" | "in" | "as" | "part");
+        let field = match name.text.as_str() {
+            // Also in what repeats or chooses at the top level, as any other field.
+            "material" => !top || word.as_span().start() > 0,
+            "to" | "in" | "as" | "part" => !top,
+            _ => false,
+        };
         if is_reserved(&name.text) && !field {
             // The `else:` of an `if …:` was explained there.
             if !self.unbraced.get() || &name.text != "else" {
