@@ -39,12 +39,12 @@ pub struct Interrupt {
 }
 
 impl Interrupt {
-    /// Listens for SIGINT, SIGTERM and SIGHUP.
+    /// Listens for SIGINT, SIGTERM and, unless it is to be ignored, SIGHUP.
     pub fn install(terminal: Terminal) -> Interrupt {
         let interrupt = Interrupt::default();
         let handler = interrupt.clone();
-        // Without a handler the signals end the process all the same, if less tidily.
-        let _ = ctrlc::set_handler(move || handler.end(terminal));
+        // Unheard, the signals end the process all the same, if less tidily.
+        let _ = listen(move || handler.end(terminal));
         interrupt
     }
 
@@ -182,6 +182,30 @@ impl Interrupt {
         terminal.line(&format!("interrupted{kept}"));
         std::process::exit(Exit::Interrupted as i32);
     }
+}
+
+/// Calls this, on a thread of its own, whenever the process is asked to end.
+#[cfg(unix)]
+fn listen(heard: impl Fn() + Send + 'static) -> io::Result<()> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let heeded = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| *signal != SIGHUP || !ignores(SIGHUP));
+    let mut signals = signal_hook::iterator::Signals::new(heeded)?;
+    let listener = move || signals.forever().for_each(|_| heard());
+    std::thread::Builder::new().name("signals".into()).spawn(listener).map(drop)
+}
+
+#[cfg(not(unix))]
+fn listen(heard: impl Fn() + Send + 'static) -> io::Result<()> {
+    ctrlc::set_handler(heard).map_err(io::Error::other)
+}
+
+/// Whether who started the process has it ignore a signal, as `nohup` does. Only Linux tells.
+#[cfg(unix)]
+fn ignores(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    mask.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
 }
 
 /// Removes files, and folders with what is in them, as far as they are there.

@@ -1,6 +1,7 @@
 //! The camera: where it stands, what it looks at, and its lens.
 
-use super::{Blocks, Extent, Lowering, Marks, errors, shape::unit};
+use super::blocks::Blocks;
+use super::{Extent, Lowering, Marks, errors, shape::unit};
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Aim, Fields, Focus, Made, ThingId};
 use crate::math::{DVec2, DVec3, atan2, sin, tan};
@@ -195,7 +196,7 @@ impl Lowering<'_> {
 
     /// The centre of the bounds of a thing or group. Of what has an error nothing more is said.
     fn center(&mut self, id: ThingId, span: Span) -> Option<DVec3> {
-        let range = self.places(id)?;
+        let range = self.things.place(id)?;
         if range.clone().any(|index| self.is_unknown(index)) {
             return None;
         }

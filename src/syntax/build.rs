@@ -1,5 +1,7 @@
 //! What the grammar found in an item to entries of the tree, and what is said of its slips.
 
+mod place;
+
 use super::ast::{
     Argument, Body, Broken, Comment, Construct, Entry, Expr, ExprKind, Field, Keyword, Name, Path, Statement,
     StatementKind,
@@ -108,83 +110,6 @@ impl<'t> Builder<'t> {
         self.sink.borrow().held()
     }
 
-    // --- Places ---------------------------------------------------------------------------------------------
-
-    pub(super) fn whole(&self) -> Span {
-        // An item that was not parsed may end within a character that was read as another.
-        let text = self.source.text;
-        let (start, end) = (self.base, self.base + self.text.len());
-        Span::new(self.source.id, text.floor_char_boundary(start), text.ceil_char_boundary(end))
-    }
-
-    /// The span of a range of the item.
-    pub(super) fn at(&self, start: usize, end: usize) -> Span {
-        Span::new(self.source.id, self.base + start, self.base + end)
-    }
-
-    pub(super) fn span(&self, pair: &Node) -> Span {
-        let span = pair.as_span();
-        self.at(span.start(), span.end())
-    }
-
-    /// The span without the white space at its end, which a rule takes that ends with something optional.
-    pub(super) fn trimmed(&self, pair: &Node) -> Span {
-        let span = pair.as_span();
-        self.at(span.start(), self.before(span.end()).len().max(span.start()))
-    }
-
-    /// The place just behind what stands before a pair.
-    pub(super) fn behind(&self, pair: &Node) -> Span {
-        let before = self.before(pair.as_span().start()).len();
-        self.at(before, before)
-    }
-
-    /// The text before an offset, without white space at its end.
-    pub(super) fn before(&self, offset: usize) -> &'t str {
-        self.text[..offset].trim_ascii_end()
-    }
-
-    /// The text before an offset.
-    pub(super) fn all_before(&self, offset: usize) -> &'t str {
-        &self.text[..offset]
-    }
-
-    /// Where the item begins in its file.
-    pub(super) fn base(&self) -> usize {
-        self.base
-    }
-
-    /// Whether white space stands at a place of the source, whatever the item has there.
-    pub(super) fn is_blank(&self, place: u32) -> bool {
-        self.source.text.as_bytes().get(place as usize).is_some_and(u8::is_ascii_whitespace)
-    }
-
-    /// Whether nothing but blanks stands behind a place of the source on its line.
-    pub(super) fn ends_line(&self, place: u32) -> bool {
-        let rest = self.source.text.get(place as usize..).unwrap_or("");
-        rest.trim_start_matches(BLANKS).starts_with('\n') || rest.trim_start_matches(BLANKS).is_empty()
-    }
-
-    /// The text behind an offset.
-    pub(super) fn after(&self, offset: usize) -> &'t str {
-        &self.text[offset..]
-    }
-
-    /// What stands there as it was written, before characters were read as others; none within a character.
-    pub(super) fn written(&self, place: Span) -> Option<&'t str> {
-        self.source.text.get(place.range())
-    }
-
-    /// How long the item is, in bytes.
-    pub(super) fn text_len(&self) -> usize {
-        self.text.len()
-    }
-
-    /// Whether the item ends with `;` and the line goes on.
-    pub(super) fn continued(&self) -> bool {
-        self.continued
-    }
-
     pub(super) fn name(&self, pair: &Node) -> Name {
         Name { text: SmolStr::new(pair.as_str()), span: self.span(pair) }
     }
@@ -209,8 +134,6 @@ impl<'t> Builder<'t> {
         }
         depth <= most
     }
-
-    // --- Entries --------------------------------------------------------------------------------------------
 
     /// The deepest tree of an expression.
     pub(super) fn most_depth(&self) -> usize {
