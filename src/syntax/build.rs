@@ -182,6 +182,11 @@ impl<'t> Builder<'t> {
         self.continued
     }
 
+    /// Whether things stand where it is, outside of those in it: in a part or a group.
+    pub(super) fn holds_things(&self) -> bool {
+        self.declares.get() || self.grouped.get()
+    }
+
     pub(super) fn name(&self, pair: &Node) -> Name {
         Name { text: SmolStr::new(pair.as_str()), span: self.span(pair) }
     }
@@ -258,16 +263,9 @@ impl<'t> Builder<'t> {
                     }
                 }
                 Rule::extra => {
-                    if !self.long_unit(&pair) {
-                        self.unexpected(&pair, |token, span| {
-                            let mut slip = errors::unexpected_extra(token, span);
-                            // `pow#(2)`: what touches begins no comment.
-                            slip.fix = slip
-                                .fix
-                                .filter(|_| token != "#" || self.is_blank(span.start.saturating_sub(1)));
-                            slip
-                        });
-                    }
+                    self.extra(&pair, entries.last());
+                    // What follows behind a comma belongs to it: `rgb 1, 0, 0`.
+                    lost = Some(pair.as_span().end());
                     entries.last_mut().into_iter().for_each(spoil);
                     entries.extend(self.begins_otherwise(&pair));
                 }
@@ -315,6 +313,9 @@ impl<'t> Builder<'t> {
             return self.marked(pair, top);
         }
         if matches!(rule, Rule::broken | Rule::reported) {
+            if let Some(name) = self.quoted_field(&pair).filter(|_| !top) {
+                return (Entry::Broken(Broken { name: Some(name), span }), 0);
+            }
             self.unexpected(&pair, |token, span| match is_reserved(token) {
                 true => statements::begins_nothing(token, span),
                 false => errors::unexpected_entry(token, span, top),
@@ -410,6 +411,9 @@ impl<'t> Builder<'t> {
                         Some(name) if matches!(word.text.as_str(), "let" | "material") => {
                             errors::missing_equals(&word.text, &name.text, word.span.to(name.span))
                         }
+                        None if &word.text == "material" && !top && !self.holds_things() => {
+                            errors::kindless_material(word.span)
+                        }
                         None if matches!(word.text.as_str(), "let" | "material") => {
                             errors::missing_name(&word.text, word.span)
                         }
@@ -417,7 +421,8 @@ impl<'t> Builder<'t> {
                     });
                     // The body's own slips are still worth knowing.
                     self.body(body);
-                    (Entry::Broken(Broken { name, span }), 0)
+                    let field = &word.text == "material" && !top;
+                    (Entry::Broken(Broken { name: name.or_else(|| field.then_some(word)), span }), 0)
                 }
             };
         }

@@ -8,6 +8,7 @@
 
 mod angled;
 pub mod ast;
+mod beside;
 mod bodiless;
 mod branches;
 mod build;
@@ -17,6 +18,7 @@ mod elements;
 mod errors;
 mod format;
 mod items;
+mod kindless;
 mod literal;
 mod lookalikes;
 mod marks;

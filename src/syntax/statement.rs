@@ -40,6 +40,8 @@ pub(super) fn statement<'t>(builder: &Builder<'t>, pair: Node<'t>) -> Deep<Entry
         parts.filter(|part| part.as_rule() == Rule::body).for_each(|body| drop(builder.body(body)));
         return (Entry::Broken(Broken { name: None, span }), 0);
     }
+    let open = rule == Rule::function
+        && parts.clone().any(|part| part.as_rule() == Rule::parameters && !is_closed(&part));
     let (kind, depth) = match rule {
         Rule::param => param(builder, parts, span),
         Rule::part => part(builder, parts, span),
@@ -50,12 +52,32 @@ pub(super) fn statement<'t>(builder: &Builder<'t>, pair: Node<'t>) -> Deep<Entry
         Rule::assertion => branches::assertion(builder, parts),
         _ => return (unfinished(builder, parts, span), 0),
     };
-    builder.checked(builder.plain(kind, span), depth, span)
+    match kind {
+        // Of neither is it known what it takes: nothing is said of its uses.
+        StatementKind::Function { name, .. } if open => (Entry::Broken(Broken { name: Some(name), span }), 0),
+        StatementKind::Part { name, body } if body.span.range().is_empty() => {
+            (Entry::Broken(Broken { name: Some(name), span }), 0)
+        }
+        kind => builder.checked(builder.plain(kind, span), depth, span),
+    }
+}
+
+/// Whether as many parentheses are closed in the parameters of a function as were opened.
+fn is_closed(parameters: &Node) -> bool {
+    let count = |sign| parameters.as_str().matches(sign).count();
+    count('(') == count(')')
 }
 
 fn unfinished<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> Entry {
     let word = parts.next().expect("an unfinished statement begins with its word");
-    builder.report(slips::unfinished(word.as_str(), builder.span(&word)));
+    let head = parts.peek().filter(|head| head.as_rule() == Rule::before_body && word.as_str() == "for");
+    builder.report(match head.filter(|head| head.as_str().starts_with('(')) {
+        Some(head) => {
+            let touches = !builder.all_before(head.as_span().start()).ends_with(BLANKS);
+            slips::head_in_parentheses(head.as_str().trim_ascii_end(), builder.trimmed(&head), touches)
+        }
+        None => slips::unfinished(word.as_str(), builder.span(&word)),
+    });
     // The body's own slips are still worth knowing.
     parts.filter(|part| part.as_rule() == Rule::body).for_each(|body| drop(builder.body(body)));
     Entry::Broken(Broken { name: None, span })
@@ -108,7 +130,7 @@ fn param<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> D
     let named = matches!(inner.as_rule(), Rule::type_name | Rule::type_list);
     let of = format!("`{}`", name.text);
     let behind = type_first(&name, inner.as_str(), builder.trimmed(&inner)).filter(|_| !has_colon);
-    let ty = match behind {
+    let mut ty = match behind {
         Some(behind) => {
             builder.report(slips::type_first(&name, &behind));
             TypeName::Named(std::mem::replace(&mut name, behind))
@@ -161,6 +183,12 @@ fn param<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> D
         // Without a type, the slip is that nothing stands behind the name.
         if !absent && !matches!(ty, TypeName::Invalid(_)) {
             builder.report(slips::missing_default(&name.text, place));
+        }
+        // One that there is not is half typed.
+        if let TypeName::Named(word) = &ty
+            && !TYPE_WORDS.contains(&word.text.as_str())
+        {
+            ty = TypeName::Invalid(word.span);
         }
         invalid(place)
     });
@@ -269,6 +297,16 @@ fn unquoted<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -
     let written = parts.next().expect("an import has a path");
     let place = builder.trimmed(&written);
     let path = written.as_str().trim_ascii_end();
+    if let Some((name, quoted)) = path.split_once(" from ").map(|(name, path)| (name.trim(), path.trim()))
+        && is_name(name)
+        && quoted.len() > 2
+        && quoted.starts_with('"')
+        && quoted.ends_with('"')
+    {
+        builder.report(slips::path_behind(name, quoted, place));
+        let name = Name { text: name.into(), span: Span { end: place.start + name.len() as u32, ..place } };
+        return Entry::Broken(Broken { name: Some(name), span });
+    }
     if !path.contains('\u{1}') {
         builder.report(slips::bare_path(path, place));
     }
@@ -297,8 +335,9 @@ fn function<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Span) -> De
         Some(pair) => {
             place = builder.trimmed(&pair);
             let known = builder.reported();
+            let closed = is_closed(&pair);
             parameters = self::parameters(builder, pair);
-            complete = builder.reported() == known;
+            complete = closed && builder.reported() == known;
         }
         None => {
             builder.report(slips::missing_parameters(place.after()));
@@ -329,11 +368,18 @@ fn function<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Span) -> De
     let (value, depth) = match (parts.next(), parts.next()) {
         (Some(sign), Some(value)) => {
             assigned(builder, &sign, "fn");
-            value::expression(builder, value)
+            match branches::bare_body(&value) {
+                Some(body) => {
+                    let place = builder.span(&body);
+                    builder.report(slips::function_braces(Span { end: place.start + 1, ..place }, true));
+                    (invalid(place), 0)
+                }
+                None => value::expression(builder, value),
+            }
         }
         (Some(body), None) => {
             let place = builder.span(&body);
-            builder.report(slips::function_braces(Span { end: place.start + 1, ..place }));
+            builder.report(slips::function_braces(Span { end: place.start + 1, ..place }, false));
             (invalid(place), 0)
         }
         _ => {
@@ -348,6 +394,7 @@ fn function<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Span) -> De
 
 fn parameters(builder: &Builder, pair: Node) -> Vec<Parameter> {
     let mut found = vec![];
+    let closed = is_closed(&pair);
     for pair in pair.into_inner() {
         if pair.as_rule() == Rule::semicolon {
             builder.semicolon(&pair);
@@ -373,8 +420,12 @@ fn parameters(builder: &Builder, pair: Node) -> Vec<Parameter> {
             }
             match (&mut parameter, part.as_rule()) {
                 (_, Rule::beyond) => {
+                    if let Some(next) = crowded_parameter(builder, &part).filter(|_| typed) {
+                        found.extend(parameter.replace(next));
+                    } else if closed || !part.as_str().starts_with('(') {
+                        builder.unexpected(&part, slips::in_parameters);
+                    }
                     typed = true;
-                    builder.unexpected(&part, slips::in_parameters);
                 }
                 (Some(parameter), _) => {
                     typed = true;
@@ -393,6 +444,21 @@ fn parameters(builder: &Builder, pair: Node) -> Vec<Parameter> {
         found.extend(parameter);
     }
     found
+}
+
+/// `i: int r: length`: a parameter behind another, without a comma between them.
+fn crowded_parameter(builder: &Builder, pair: &Node) -> Option<Parameter> {
+    let text = pair.as_str().trim_ascii_end();
+    let (name, ty) = text.split_once(':')?;
+    let (name, ty) = (name.trim_ascii(), ty.trim_ascii());
+    if !is_name(name) || !TYPE_WORDS.contains(&ty) {
+        return None;
+    }
+    let span = builder.trimmed(pair);
+    let name = Name { text: name.into(), span: Span { end: span.start + name.len() as u32, ..span } };
+    let ty = Name { text: ty.into(), span: Span { start: span.end - ty.len() as u32, ..span } };
+    builder.report(slips::in_parameters(&name.text, name.span).fix(builder.behind(pair), ","));
+    Some(Parameter { name, ty: TypeName::Named(ty) })
 }
 
 /// `int count`: the name that stands behind a type in place of before it.

@@ -3,8 +3,8 @@
 use super::super::{BLANKS, errors};
 use super::{Cutter, Last, is_word};
 
-/// The longest list of variables of a loop, in bytes, that is looked at: the time stays in proportion to the text.
-const MAX_HEAD: usize = 200;
+/// The longest head of a statement, in bytes, that is looked at: the time stays in proportion to the text.
+pub(super) const MAX_HEAD: usize = 200;
 
 /// The words that POV-Ray has before the parts of a colour in angle brackets.
 ///
