@@ -72,12 +72,13 @@ impl Builder<'_> {
     fn long_unit(&self, pair: &Node) -> bool {
         let text = pair.as_str().trim_ascii_start();
         let start = pair.as_span().end() - text.len();
-        let before = self.before(start).len();
-        let number = self.before(start).ends_with(|c: char| c.is_ascii_digit() || c == ')');
+        let before = self.before(start);
+        let digits = before.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.').len();
+        let number = if before.ends_with(')') { "(…)" } else { &before[digits..] };
         let word = errors::first_token(text);
         let end = start + word.len();
-        let found = errors::long_unit(word, self.at(start, end), self.at(before, end)).filter(|_| number);
-        found.map(|diagnostic| self.report(diagnostic)).is_some()
+        let found = errors::long_unit(number, word, self.at(start, end), self.at(before.len(), end));
+        found.filter(|_| !number.is_empty()).map(|diagnostic| self.report(diagnostic)).is_some()
     }
 
     /// `at: (0, 1, 0)m power: 60W`, without a comma: what begins behind a whole entry, if it has a name, is given.

@@ -1,7 +1,7 @@
 //! What the grammar found in an item to entries of the tree, and what is said of its slips.
 
 use super::ast::{
-    Argument, Body, Broken, Comment, Construct, Entry, Expr, ExprKind, Field, Keyword, Name, Path, Statement,
+    Argument, Body, Broken, Comment, Construct, Entry, Expr, ExprKind, Field, Name, Path, Statement,
     StatementKind,
 };
 use super::cut::Item;
@@ -409,7 +409,15 @@ impl<'t> Builder<'t> {
                 name => {
                     self.report(match &name {
                         Some(name) if matches!(word.text.as_str(), "let" | "material") => {
-                            errors::missing_equals(&word.text, &name.text, word.span.to(name.span))
+                            let slip =
+                                errors::missing_equals(&word.text, &name.text, word.span.to(name.span));
+                            match &word.text == "material" {
+                                true => slip.offer(
+                                    "make it `diffuse`",
+                                    vec![(name.span.after(), " = diffuse".into())],
+                                ),
+                                false => slip,
+                            }
                         }
                         None if &word.text == "material" && !top && !self.holds_things() => {
                             errors::kindless_material(word.span)
@@ -471,29 +479,5 @@ impl<'t> Builder<'t> {
             Entry::Rows(_) => None,
         };
         (Entry::Broken(Broken { name, span }), 0)
-    }
-
-    fn definition(&self, keyword: &Node, mut inner: Pairs<'t, Rule>, span: Span) -> Deep<Entry> {
-        let name = self.name(&inner.next().expect("a definition has a name"));
-        let sign = inner.next().expect("a definition has `=` or `:`");
-        let (value, depth) = self.expression(inner);
-        if matches!(sign.as_str(), ":" | ":=" | "==") {
-            let place = self.span(&sign);
-            // `let r: length 5cm`: what stands before the value is a type.
-            let behind = self.after(value.span.range().end - self.base).trim_start_matches(BLANKS);
-            let is_type = matches!(value.kind, ExprKind::Name(_))
-                && behind.starts_with(|c: char| c.is_alphanumeric() || "#.\"".contains(c));
-            let end = if is_type { value.span.range().end - self.base } else { sign.as_span().end() };
-            let edit = self.at(name.span.range().end - self.base, end);
-            self.report(errors::colon_in_definition(keyword.as_str(), &name.text, place, edit));
-        } else if let Some(ty) = sign.clone().into_inner().next() {
-            let edit = self.at(name.span.range().end - self.base, ty.as_span().end());
-            self.report(errors::type_in_definition(keyword.as_str(), &name.text, self.span(&ty), edit));
-        }
-        if is_reserved(&name.text) {
-            self.report(errors::reserved(&name.text, name.span));
-        }
-        let keyword = if keyword.as_str() == "let" { Keyword::Let } else { Keyword::Material };
-        (self.plain(StatementKind::Definition { keyword, name, value }, span), depth)
     }
 }

@@ -82,10 +82,12 @@ impl Sink {
         self.told[index] = self.told[index].clone().label(place, text);
     }
 
-    /// Whether a place lies in values of which it was said that they have no parentheses.
-    pub(super) fn tells_of_components(&self, place: Span) -> bool {
+    /// Whether a place lies in values, or behind parameters, of which it was said that they have no parentheses.
+    pub(super) fn tells_of_parentheses(&self, place: Span) -> bool {
         self.told.iter().any(|diagnostic| {
-            diagnostic.message == BARE_COMPONENTS && diagnostic.primary.span.contains(place)
+            let span = diagnostic.primary.span;
+            diagnostic.message == BARE_COMPONENTS && span.contains(place)
+                || statements::misses_parentheses(diagnostic) && span.end == place.start
         })
     }
 
@@ -149,7 +151,8 @@ pub(super) fn unexpected_extra(token: &str, span: Span) -> Diagnostic {
     match token {
         "{" => diagnostic.help("only a kind is followed by a body: `sphere { … }` or `sphere ball { … }`"),
         "°" => diagnostic.help("an angle is written `45deg`").fix(span, "deg"),
-        "|" => diagnostic.help("`|>` passes a placement on"),
+        "|" => diagnostic
+            .help("placements stand in a field, joined by `|>`: `place: turn(y: 30deg) |> move(0, 1m, 0)`"),
         "'" => diagnostic.help("feet are written `3ft`, and inches `3in`"),
         "#" => diagnostic.help("a comment begins with `//`").fix(span, "//"),
         code if code.starts_with('#') => {
@@ -351,7 +354,7 @@ pub(super) fn lone_name(name: &str, span: Span, things: bool) -> Diagnostic {
 
 /// `let a 5`, `material glass { … }`
 pub(super) fn missing_equals(keyword: &str, name: &str, span: Span) -> Diagnostic {
-    let value = if keyword == "material" { "dielectric { … }" } else { "…" };
+    let value = if keyword == "material" { "diffuse { … }" } else { "…" };
     Diagnostic::new(Code::E0001, format!("`=` is missing after `{keyword} {name}`"), span)
         .at("named, but not defined")
         .help(format!("write `{keyword} {name} = {value}`"))

@@ -1,6 +1,6 @@
 //! Bodies that do not follow their kind at once: `sphere: { … }`, `sphere ball = { … }`, `material: { … }`.
 
-use super::ast::{Broken, Entry, Expr, ExprKind, Field, Name, StatementKind};
+use super::ast::{Broken, Entry, Expr, ExprKind, Name, StatementKind};
 use super::build::{Builder, Deep, Node, Rule};
 use super::errors;
 use super::{BLANKS, is_name};
@@ -64,14 +64,14 @@ impl<'t> Builder<'t> {
         Some(Entry::Broken(Broken { name: Some(name), span }))
     }
 
-    /// `material: { color: red }`, `lens: { focal: 50mm }`: a field whose value is a body without its kind.
-    pub(super) fn kindless(&self, name: Name, value: Node<'t>) -> Deep<Entry> {
+    /// `material: { color: red }`, `lens: { focal: 50mm }`: a value that is a body without its kind.
+    pub(super) fn kindless(&self, field: &str, value: Node<'t>) -> Deep<Expr> {
         let span = self.trimmed(&value);
-        self.report(match errors::kindless_field(&name.text, Span { end: span.start + 1, ..span }) {
+        self.report(match errors::kindless_field(field, Span { end: span.start + 1, ..span }) {
             Some(slip) => slip,
             None => self.bare_body(span),
         });
-        (Entry::Field(Field { name, value: Expr { kind: ExprKind::Invalid, span } }), 1)
+        (Expr { kind: ExprKind::Invalid, span }, 1)
     }
 
     /// A body where a value belongs.

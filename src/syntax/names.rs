@@ -3,7 +3,7 @@
 use super::ast::{Broken, Entry, Name};
 use super::build::{Builder, Node};
 use super::errors;
-use super::{BLANKS, PLACED_WORDS, is_name};
+use super::{BLANKS, NAMING_WORDS, PLACED_WORDS, is_name, leading};
 use crate::diagnostic::Diagnostic;
 
 impl Builder<'_> {
@@ -36,6 +36,19 @@ impl Builder<'_> {
         let apart = name.starts_with(|c: char| c.is_ascii_digit()) || name.contains('-');
         let sound = apart && !name.starts_with('-') && !name.ends_with('-');
         (thing && sound).then(|| (errors::no_name(kind, name, self.at(start, start + end)), None))
+    }
+
+    /// `part 2legs { … }`, `let 2r = 1m`: whether what stands behind the word of a statement is a name with a digit first.
+    pub(super) fn digit_first(&self, keyword: &str, end: usize) -> bool {
+        let text = self.after(end).trim_start_matches(BLANKS);
+        let name = leading(text, "");
+        let start = self.text_len() - text.len();
+        let found = NAMING_WORDS.contains(&keyword) && name.starts_with(|c: char| c.is_ascii_digit());
+        if found {
+            let word = if keyword == "let" { "value" } else { keyword };
+            self.report(errors::no_name(word, name, self.at(start, start + name.len())));
+        }
+        found
     }
 
     /// `"radius": 1m`: the name of a field, as JSON has it.

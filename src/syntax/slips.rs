@@ -94,7 +94,10 @@ impl<'t> Builder<'t> {
         let only = value.clone().into_inner().next().map(|only| only.as_rule());
         match only {
             Some(Rule::bare_body) if top => return self.signed_body(name, ":", value, span),
-            Some(Rule::bare_body) => return self.kindless(name, value),
+            Some(Rule::bare_body) => {
+                let (value, depth) = self.kindless(&name.text, value);
+                return (Entry::Field(Field { name, value }), depth);
+            }
             Some(Rule::absent) if top => {
                 self.report(errors::missing_body(&name.text, name.span));
                 return lost(Some(name));
@@ -272,7 +275,9 @@ impl<'t> Builder<'t> {
             return (Entry::Broken(Broken { name, span }), 0);
         }
         if is_reserved(&name.text) && !field {
-            self.report(statements::begins_nothing(&name.text, name.span));
+            if !self.digit_first(&name.text, word.as_span().end()) {
+                self.report(statements::begins_nothing(&name.text, name.span));
+            }
         } else if !top && is_placement(&name.text) && value.as_str().starts_with('(') {
             self.report(errors::placement_alone(&name.text, name.span.to(value_span)));
         } else if let Some(color) = only(&value, Rule::angled_color).filter(|_| !top) {

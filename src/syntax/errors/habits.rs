@@ -162,7 +162,7 @@ pub(in crate::syntax) fn kindless_field(field: &str, open: Span) -> Option<Diagn
     Some(match field {
         "lens" => diagnostic.help("write `lens: lens { … }`").fix(open.before(), "lens "),
         "material" => diagnostic
-            .help("name the kind of material: `material: diffuse { … }`")
+            .help("name the kind of material: `diffuse { … }`")
             .offer("make it `diffuse`", vec![(open.before(), "diffuse ".into())]),
         _ => return None,
     })
@@ -330,11 +330,15 @@ pub(in crate::syntax) fn power_of_unit(
 }
 
 /// `1 meter`: a unit is not written out. `place` is from behind the number.
-pub(in crate::syntax) fn long_unit(word: &str, span: Span, place: Span) -> Option<Diagnostic> {
+pub(in crate::syntax) fn long_unit(number: &str, word: &str, span: Span, place: Span) -> Option<Diagnostic> {
     let unit = units::spelt_out(word)?;
     let diagnostic =
         Diagnostic::new(Code::E0101, format!("unknown unit `{word}`"), span).at("not known here");
-    Some(diagnostic.help(format!("write `{unit}`, which touches its number: `1{unit}`")).fix(place, unit))
+    Some(
+        diagnostic
+            .help(format!("write `{unit}`, which touches its number: `{number}{unit}`"))
+            .fix(place, unit),
+    )
 }
 
 /// `[for i in list { … }]`, `[2 * i for i in list]`

@@ -183,6 +183,13 @@ pub(in crate::syntax) fn missing_in(sign: &str, span: Span) -> Diagnostic {
     unexpected(sign, span).at("`in` is wanted").help(format!("write `{}`", form("for"))).fix(span, "in")
 }
 
+/// `for i = 0; i < 3; i++ { … }`
+pub(in crate::syntax) fn counting_loop(head: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, "a `for` goes through a list or a range", head)
+        .at("is written otherwise")
+        .help("write `for i in range(3) { … }`, where `i` is 0, 1 and 2")
+}
+
 /// `for (i in list) { … }`, `for (i = 0; i < 3; i++) { … }`; `touches` is whether the head does so the word before it.
 pub(in crate::syntax) fn head_in_parentheses(head: &str, span: Span, touches: bool) -> Diagnostic {
     let inside = head.strip_prefix('(').and_then(|head| head.strip_suffix(')')).map(str::trim_ascii);
@@ -192,9 +199,7 @@ pub(in crate::syntax) fn head_in_parentheses(head: &str, span: Span, touches: bo
         is_name(name) && crate::syntax::leading(behind, "") == "in"
     });
     let Some(inside) = inside else {
-        return Diagnostic::new(Code::E0001, "a `for` goes through a list or a range", span)
-            .at("is written otherwise")
-            .help("write `for i in range(3) { … }`, where `i` is 0, 1 and 2");
+        return counting_loop(span);
     };
     Diagnostic::new(Code::E0001, "the head of a `for` has no parentheses", span)
         .at("no parentheses belong here")
@@ -309,6 +314,12 @@ pub(in crate::syntax) fn missing_parameters(place: Span) -> Diagnostic {
 pub(in crate::syntax) fn bare_parameters(name: &str, span: Span) -> Diagnostic {
     missing(&format!("the parameters of `{name}` have no parentheses"), span, "fn")
         .at("`(…)` belongs around these")
+}
+
+/// Whether it tells of parameters without parentheses, so that their `)` closes nothing.
+pub(in crate::syntax) fn misses_parentheses(diagnostic: &Diagnostic) -> bool {
+    diagnostic.message.starts_with("the parameters of ")
+        && diagnostic.message.ends_with(" have no parentheses")
 }
 
 /// `for in list { … }`
