@@ -28,10 +28,21 @@ const fn elsewhere(hint: &'static str) -> Familiar {
 /// What a field that a kind does not have is called here.
 pub fn field(kind: &str, category: Category, name: &str) -> Option<Familiar> {
     match category {
-        Category::Shape | Category::Group => placed(name).or_else(|| shape(kind, name)),
+        Category::Shape | Category::Group => {
+            drawn(name).or_else(|| placed(name)).or_else(|| shape(kind, name))
+        }
         Category::Material => material(kind, name),
-        Category::Light => light(kind, name),
+        Category::Light => drawn(name).or_else(|| light(kind, name)),
         Category::Block => block(kind, name),
+    }
+}
+
+fn drawn(name: &str) -> Option<Familiar> {
+    match name {
+        "off" | "visible" | "hidden" | "hide" | "enabled" | "disabled" | "visibility" => {
+            Some(elsewhere("`@off` before a thing leaves it out of the picture: `@off sphere { … }`"))
+        }
+        _ => None,
     }
 }
 

@@ -11,10 +11,9 @@ impl Builder<'_> {
     /// what only stands in its body is written in both ways; in other things the words are a field.
     pub(super) fn thing_or_field(&self, word: &Name, value: &Node, span: Span, top: bool) -> Option<Entry> {
         let second = value.as_str().trim_ascii_end();
-        let holds_things = self.declares.get() || self.grouped.get();
         let is_field = is_reserved(&word.text) || PLACED_WORDS.contains(&word.text.as_str());
         let part = self.holds_part.get().filter(|[_, part]| word.text == *part);
-        if top || !is_name(second) || is_field || !(holds_things || part.is_some()) {
+        if top || !is_name(second) || is_field || !(self.holds_things() || part.is_some()) {
             return None;
         }
         let name = Name { text: second.into(), span: self.trimmed(value) };
@@ -27,7 +26,7 @@ impl Builder<'_> {
 
     /// `file.post`, `file.post left`, `file.`: a thing of a part of a file, as far as it was written. Gives its name.
     pub(super) fn bodiless_path(&self, first: &Name, end: usize, top: bool) -> Option<Option<Name>> {
-        if !(top || self.declares.get() || self.grouped.get()) {
+        if !(top || self.holds_things()) {
             return None;
         }
         let rest = self.after(end);
@@ -73,16 +72,5 @@ impl Builder<'_> {
             _ => errors::missing_body(&format!("{path} {second}"), name.span),
         });
         Some(Some(name).filter(|_| !second.is_empty()))
-    }
-}
-
-impl Builder<'_> {
-    /// `at: (0, 1, 0)m power: 60W`, without a comma: what begins behind a whole entry, if it has a name, is given.
-    pub(super) fn begins_otherwise(&self, pair: &Node) -> Option<Entry> {
-        let text = pair.as_str().trim_ascii_start();
-        let word = Some(leading(text, "")).filter(|word| is_name(word))?;
-        let start = pair.as_span().start() + pair.as_str().len() - text.len();
-        let name = Name { text: word.into(), span: self.at(start, start + word.len()) };
-        Some(Entry::Broken(Broken { name: Some(name), span: self.trimmed(pair) }))
     }
 }

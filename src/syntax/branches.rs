@@ -77,6 +77,16 @@ pub(super) fn repetition<'t>(
     (StatementKind::For { variable, list, body }, depth.max(deep) + 1)
 }
 
+/// Whether a value ends with one that is missing, or was not understood.
+pub(super) fn is_half_typed(value: &Expr) -> bool {
+    match &value.kind {
+        ExprKind::Invalid => true,
+        ExprKind::Binary { right, .. } => is_half_typed(right),
+        ExprKind::Unary { operand, .. } => is_half_typed(operand),
+        _ => false,
+    }
+}
+
 /// The body behind a head, with a complaint where it is missing or something stands before it.
 fn block<'t>(
     builder: &Builder<'t>,
@@ -85,7 +95,7 @@ fn block<'t>(
     head: &Expr,
     span: Span,
 ) -> Deep<Body> {
-    let known = !matches!(head.kind, ExprKind::Invalid);
+    let known = !is_half_typed(head);
     if let Some(before) = parts.next_if(|part| part.as_rule() == Rule::before_body) {
         let text = before.as_str().trim_ascii();
         if text.len() > 1 && text.starts_with(':') {
@@ -170,7 +180,7 @@ pub(super) fn choice<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Sp
 }
 
 /// The body that a value is, without a kind before it.
-fn bare_body<'t>(value: &Node<'t>) -> Option<Node<'t>> {
+pub(super) fn bare_body<'t>(value: &Node<'t>) -> Option<Node<'t>> {
     let mut inner = value.clone().into_inner();
     let first = inner.next().filter(|first| first.as_rule() == Rule::bare_body)?;
     inner.next().is_none().then(|| first.into_inner().next())?

@@ -3,13 +3,13 @@
 mod place;
 
 use super::ast::{
-    Argument, Body, Broken, Comment, Construct, Entry, Expr, ExprKind, Field, Keyword, Name, Path, Statement,
+    Argument, Body, Broken, Comment, Construct, Entry, Expr, ExprKind, Field, Name, Path, Statement,
     StatementKind,
 };
 use super::cut::Item;
 use super::errors::{self, Held, Sink, statements};
 use super::slips::{ends_invalid, spoil};
-use super::{BLANKS, GROUP_WORD, PART_WORDS, angled, docs, statement, value};
+use super::{GROUP_WORD, PART_WORDS, angled, docs, statement, value};
 use crate::span::{SourceId, Span};
 use pest::iterators::{Pair, Pairs};
 use smol_str::SmolStr;
@@ -184,16 +184,9 @@ impl<'t> Builder<'t> {
                     }
                 }
                 Rule::extra => {
-                    if !self.long_unit(&pair) {
-                        self.unexpected(&pair, |token, span| {
-                            let mut slip = errors::unexpected_extra(token, span);
-                            // `pow#(2)`: what touches begins no comment.
-                            slip.fix = slip
-                                .fix
-                                .filter(|_| token != "#" || self.is_blank(span.start.saturating_sub(1)));
-                            slip
-                        });
-                    }
+                    self.extra(&pair, entries.last());
+                    // What follows behind a comma belongs to it: `rgb 1, 0, 0`.
+                    lost = Some(pair.as_span().end());
                     entries.last_mut().into_iter().for_each(spoil);
                     entries.extend(self.begins_otherwise(&pair));
                 }
@@ -235,12 +228,20 @@ impl<'t> Builder<'t> {
         (entries, deepest)
     }
 
+    /// Whether things stand where it is, outside of those in it: in a part or a group.
+    pub(super) fn holds_things(&self) -> bool {
+        self.declares.get() || self.grouped.get()
+    }
+
     pub(super) fn entry(&self, pair: Node<'t>, top: bool) -> Deep<Entry> {
         let (rule, span) = (pair.as_rule(), self.trimmed(&pair));
         if rule == Rule::marked {
             return self.marked(pair, top);
         }
         if matches!(rule, Rule::broken | Rule::reported) {
+            if let Some(name) = self.quoted_field(&pair).filter(|_| !top) {
+                return (Entry::Broken(Broken { name: Some(name), span }), 0);
+            }
             self.unexpected(&pair, |token, span| match is_reserved(token) {
                 true => statements::begins_nothing(token, span),
                 false => errors::unexpected_entry(token, span, top),
@@ -337,7 +338,18 @@ impl<'t> Builder<'t> {
                 name => {
                     self.report(match &name {
                         Some(name) if matches!(word.text.as_str(), "let" | "material") => {
-                            errors::missing_equals(&word.text, &name.text, word.span.to(name.span))
+                            let slip =
+                                errors::missing_equals(&word.text, &name.text, word.span.to(name.span));
+                            match &word.text == "material" {
+                                true => slip.offer(
+                                    "make it `diffuse`",
+                                    vec![(name.span.after(), " = diffuse".into())],
+                                ),
+                                false => slip,
+                            }
+                        }
+                        None if &word.text == "material" && !top && !self.holds_things() => {
+                            errors::kindless_material(word.span)
                         }
                         None if matches!(word.text.as_str(), "let" | "material") => {
                             errors::missing_name(&word.text, word.span)
@@ -346,7 +358,8 @@ impl<'t> Builder<'t> {
                     });
                     // The body's own slips are still worth knowing.
                     self.body(body);
-                    (Entry::Broken(Broken { name, span }), 0)
+                    let field = &word.text == "material" && !top;
+                    (Entry::Broken(Broken { name: name.or_else(|| field.then_some(word)), span }), 0)
                 }
             };
         }
@@ -395,29 +408,5 @@ impl<'t> Builder<'t> {
             Entry::Rows(_) => None,
         };
         (Entry::Broken(Broken { name, span }), 0)
-    }
-
-    fn definition(&self, keyword: &Node, mut inner: Pairs<'t, Rule>, span: Span) -> Deep<Entry> {
-        let name = self.name(&inner.next().expect("a definition has a name"));
-        let sign = inner.next().expect("a definition has `=` or `:`");
-        let (value, depth) = self.expression(inner);
-        if matches!(sign.as_str(), ":" | ":=" | "==") {
-            let place = self.span(&sign);
-            // `let r: length 5cm`: what stands before the value is a type.
-            let behind = self.after(value.span.range().end - self.base).trim_start_matches(BLANKS);
-            let is_type = matches!(value.kind, ExprKind::Name(_))
-                && behind.starts_with(|c: char| c.is_alphanumeric() || "#.\"".contains(c));
-            let end = if is_type { value.span.range().end - self.base } else { sign.as_span().end() };
-            let edit = self.at(name.span.range().end - self.base, end);
-            self.report(errors::colon_in_definition(keyword.as_str(), &name.text, place, edit));
-        } else if let Some(ty) = sign.clone().into_inner().next() {
-            let edit = self.at(name.span.range().end - self.base, ty.as_span().end());
-            self.report(errors::type_in_definition(keyword.as_str(), &name.text, self.span(&ty), edit));
-        }
-        if is_reserved(&name.text) {
-            self.report(errors::reserved(&name.text, name.span));
-        }
-        let keyword = if keyword.as_str() == "let" { Keyword::Let } else { Keyword::Material };
-        (self.plain(StatementKind::Definition { keyword, name, value }, span), depth)
     }
 }

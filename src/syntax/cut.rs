@@ -282,7 +282,8 @@ impl<'t> Cutter<'t> {
                     && !self.is_decimal_comma()
                     && !self.precedes_number()
                     && !self.message_follows()
-                    && !self.is_among_variables() =>
+                    && !self.is_among_variables()
+                    && !self.is_among_parameters() =>
                 {
                     return self.comma();
                 }
@@ -294,7 +295,8 @@ impl<'t> Cutter<'t> {
             self.begin(start);
         }
         self.last = match byte {
-            b'#' | b'-' if self.begins_foreign_comment() => self.foreign_comment(),
+            b'#' | b'-' | b'<' if self.begins_foreign_comment() => self.foreign_comment(),
+            b';' if let Some(last) = self.counting_loop() => last,
             b'(' | b'[' | b'{' => self.open(),
             b')' | b']' | b'}' => self.close(first_on_line),
             b'"' => self.string(),
@@ -309,7 +311,7 @@ impl<'t> Cutter<'t> {
             _ => self.take(1, Last::Operand),
         };
         self.end = self.at;
-        if byte == b';' && self.levels.is_empty() && self.splits {
+        if byte == b';' && self.at == start + 1 && self.levels.is_empty() && self.splits {
             self.finish();
             self.comma_allowed = false;
         }

@@ -82,10 +82,12 @@ impl Sink {
         self.told[index] = self.told[index].clone().label(place, text);
     }
 
-    /// Whether a place lies in values of which it was said that they have no parentheses.
-    pub(super) fn tells_of_components(&self, place: Span) -> bool {
+    /// Whether a place lies in values, or behind parameters, of which it was said that they have no parentheses.
+    pub(super) fn tells_of_parentheses(&self, place: Span) -> bool {
         self.told.iter().any(|diagnostic| {
-            diagnostic.message == BARE_COMPONENTS && diagnostic.primary.span.contains(place)
+            let span = diagnostic.primary.span;
+            diagnostic.message == BARE_COMPONENTS && span.contains(place)
+                || statements::misses_parentheses(diagnostic) && span.end == place.start
         })
     }
 
@@ -149,7 +151,8 @@ pub(super) fn unexpected_extra(token: &str, span: Span) -> Diagnostic {
     match token {
         "{" => diagnostic.help("only a kind is followed by a body: `sphere { … }` or `sphere ball { … }`"),
         "°" => diagnostic.help("an angle is written `45deg`").fix(span, "deg"),
-        "|" => diagnostic.help("`|>` passes a placement on"),
+        "|" => diagnostic
+            .help("placements stand in a field, joined by `|>`: `place: turn(y: 30deg) |> move(0, 1m, 0)`"),
         "'" => diagnostic.help("feet are written `3ft`, and inches `3in`"),
         "#" => diagnostic.help("a comment begins with `//`").fix(span, "//"),
         code if code.starts_with('#') => {
@@ -276,7 +279,16 @@ pub(super) fn missing_value(before: &str, span: Span) -> Diagnostic {
         "" => "a value is missing".to_string(),
         before => format!("a value is missing after {}", shown(before)),
     };
-    Diagnostic::new(Code::E0001, message, span).at("a value belongs here")
+    Diagnostic::new(Code::E0001, message, span).at("a value belongs here").help(match before {
+        "|>" => "the next placement follows: `turn(y: 30deg) |> move(0, 1m, 0)`",
+        "if" | "elif" | "elseif" | "elsif" => "a condition follows: `if n > 2 { … }`",
+        "and" | "or" | "not" | "assert" | "==" | "!=" | "<" | "<=" | ">" | ">=" => {
+            "a condition compares two values: `n > 2`"
+        }
+        "+" | "-" | "*" | "/" => "write what follows the sign, or leave it out",
+        "in" => "a list or a range follows: `range(3)`, `[1m, 2m]`",
+        _ => "write a value such as `5cm`, `(0, 1, 0)m`, `#d94f30` or a name",
+    })
 }
 
 /// `()`
@@ -323,12 +335,17 @@ pub(super) fn no_brace(kind: &str, span: Span, value: Span) -> Diagnostic {
         .help(format!("a thing has its fields in braces: `{kind} {{ … }}`"))
 }
 
-/// A name in a body, and nothing more.
-pub(super) fn lone_name(name: &str, span: Span) -> Diagnostic {
+/// A name in a body, and nothing more; `things` is whether that holds things.
+pub(super) fn lone_name(name: &str, span: Span, things: bool) -> Diagnostic {
     if name == "material" {
         return Diagnostic::new(Code::E0001, "`material` has no value", span)
             .at("`:` is missing behind this")
             .help("write `material: …` for a field, or `material NAME = …` for a definition");
+    }
+    if !things && name != "lens" {
+        return Diagnostic::new(Code::E0001, format!("`{name}` has no value"), span)
+            .at("`:` is missing behind this, or the name of a field before it")
+            .help(format!("write `{name}: …`; a value follows the name of its field, as in `color: red`"));
     }
     Diagnostic::new(Code::E0001, format!("`{name}` has neither a value nor a body"), span)
         .at("`:` or `{` is missing behind this")
@@ -337,7 +354,7 @@ pub(super) fn lone_name(name: &str, span: Span) -> Diagnostic {
 
 /// `let a 5`, `material glass { … }`
 pub(super) fn missing_equals(keyword: &str, name: &str, span: Span) -> Diagnostic {
-    let value = if keyword == "material" { "dielectric { … }" } else { "…" };
+    let value = if keyword == "material" { "diffuse { … }" } else { "…" };
     Diagnostic::new(Code::E0001, format!("`=` is missing after `{keyword} {name}`"), span)
         .at("named, but not defined")
         .help(format!("write `{keyword} {name} = {value}`"))

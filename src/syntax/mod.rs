@@ -8,6 +8,7 @@
 
 mod angled;
 pub mod ast;
+mod beside;
 mod bodiless;
 mod branches;
 mod build;
@@ -16,7 +17,10 @@ mod docs;
 mod elements;
 mod errors;
 mod format;
+mod functions;
+
 mod items;
+mod kindless;
 mod literal;
 mod lookalikes;
 mod marks;
@@ -219,7 +223,7 @@ fn strays(strays: &[cut::Stray], sink: &mut errors::Sink) {
     for stray in strays.iter().filter(|stray| !stray.forgiven) {
         let explained = match stray.closer {
             // It closes values whose opening parenthesis was missed.
-            ')' => sink.tells_of_components(stray.span),
+            ')' => sink.tells_of_parentheses(stray.span),
             // It closes the body whose brace was missed, the last one before it.
             '}' => match braces.iter().rposition(|(_, place)| place.start < stray.span.start) {
                 Some(last) => {

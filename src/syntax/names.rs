@@ -1,9 +1,9 @@
 //! What stands as the name of a thing and cannot be one.
 
 use super::ast::{Broken, Entry, Name};
-use super::build::Builder;
+use super::build::{Builder, Node};
 use super::errors;
-use super::{BLANKS, PLACED_WORDS, is_name};
+use super::{BLANKS, NAMING_WORDS, PLACED_WORDS, is_name, leading};
 use crate::diagnostic::Diagnostic;
 
 impl Builder<'_> {
@@ -38,9 +38,33 @@ impl Builder<'_> {
         (thing && sound).then(|| (errors::no_name(kind, name, self.at(start, start + end)), None))
     }
 
+    /// `part 2legs { … }`, `let 2r = 1m`: whether what stands behind the word of a statement is a name with a digit first.
+    pub(super) fn digit_first(&self, keyword: &str, end: usize) -> bool {
+        let text = self.after(end).trim_start_matches(BLANKS);
+        let name = leading(text, "");
+        let start = self.text_len() - text.len();
+        let found = NAMING_WORDS.contains(&keyword) && name.starts_with(|c: char| c.is_ascii_digit());
+        if found {
+            let word = if keyword == "let" { "value" } else { keyword };
+            self.report(errors::no_name(word, name, self.at(start, start + name.len())));
+        }
+        found
+    }
+
+    /// `"radius": 1m`: the name of a field, as JSON has it.
+    pub(super) fn quoted_field(&self, pair: &Node) -> Option<Name> {
+        let (name, behind) = pair.as_str().strip_prefix('"')?.split_once('"')?;
+        if !is_name(name) || !behind.trim_start_matches(BLANKS).starts_with(':') {
+            return None;
+        }
+        let start = pair.as_span().start();
+        self.report(errors::quoted_field(name, self.at(start, start + name.len() + 2)));
+        Some(Name { text: name.into(), span: self.at(start + 1, start + 1 + name.len()) })
+    }
+
     /// `sphere my ball { … }`: a name of several words, in a body that holds things.
     pub(super) fn name_of_words(&self, kind: &Name, start: usize, top: bool) -> Option<Entry> {
-        let holds_things = top || self.declares.get() || self.grouped.get();
+        let holds_things = top || self.holds_things();
         let text = self.after(start);
         let (name, _) = text.split_once('{').filter(|_| holds_things)?;
         let name = name.trim_end_matches(BLANKS);

@@ -40,6 +40,18 @@ pub(super) fn bare_name(entry: &mut Entry) -> Option<(smol_str::SmolStr, &mut Ex
     Some((name.clone(), value))
 }
 
+/// The value of a field or a definition.
+pub(super) fn value_of(entry: &Entry) -> Option<&Expr> {
+    match entry {
+        Entry::Field(field) => Some(&field.value),
+        Entry::Statement(statement) => match &statement.kind {
+            StatementKind::Definition { value, .. } => Some(value),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
 /// Makes the value invalid with which an entry ends, because more stands behind it: what it was to be is not known.
 /// What stands in a body of its own is looked at all the same.
 pub(super) fn spoil(entry: &mut Entry) {
@@ -80,10 +92,14 @@ impl<'t> Builder<'t> {
             }
             return lost(None);
         }
-        let only = value.clone().into_inner().next().filter(|_| top).map(|only| only.as_rule());
+        let only = value.clone().into_inner().next().map(|only| only.as_rule());
         match only {
-            Some(Rule::bare_body) => return self.signed_body(name, ":", value, span),
-            Some(Rule::absent) => {
+            Some(Rule::bare_body) if top => return self.signed_body(name, ":", value, span),
+            Some(Rule::bare_body) => {
+                let (value, depth) = self.kindless(&name.text, value);
+                return (Entry::Field(Field { name, value }), depth);
+            }
+            Some(Rule::absent) if top => {
                 self.report(errors::missing_body(&name.text, name.span));
                 return lost(Some(name));
             }
@@ -116,26 +132,6 @@ impl<'t> Builder<'t> {
         Some(self.checked(self.plain(param, span), depth + 1, span))
     }
 
-    /// `sphere: { radius: 1m }`, `sphere = { radius: 1m }` at the top level. The value begins with the body.
-    fn signed_body(&self, kind: Name, sign: &str, value: Node<'t>, span: Span) -> Deep<Entry> {
-        let opener = self.span(&value).before();
-        let edit = Span { start: kind.span.end, ..opener };
-        self.report(errors::sign_before_body(&kind.text, sign, edit));
-        let mut parts = value.into_inner();
-        let body =
-            parts.next().and_then(|bare| bare.into_inner().next()).expect("the value begins with a body");
-        if let Some(extra) = parts.next() {
-            self.unexpected(&extra, errors::unexpected_extra);
-        }
-        match self.construct(vec![kind], body) {
-            (Some(construct), depth) => {
-                let thing = StatementKind::Thing { name: None, construct };
-                self.checked(self.plain(thing, span), depth, span)
-            }
-            (None, depth) => (Entry::Broken(Broken { name: None, span }), depth),
-        }
-    }
-
     /// `1,5m`, a number with a decimal comma, or `0,1,0`, values without parentheses: whether it is one of them; else
     /// the value behind the comma belongs to nothing.
     pub(super) fn decimal(&self, pair: &Node) -> bool {
@@ -163,15 +159,7 @@ impl<'t> Builder<'t> {
     /// `at: 0, 1, 0`, values without parentheses behind a field; behind anything else the first belongs to nothing.
     pub(super) fn listed(&self, pair: &Node, before: Option<&Entry>) {
         let all = self.trimmed(pair);
-        let value = match before {
-            Some(Entry::Field(field)) => Some(&field.value),
-            Some(Entry::Statement(statement)) => match &statement.kind {
-                StatementKind::Definition { value, .. } => Some(value),
-                _ => None,
-            },
-            _ => None,
-        };
-        match value {
+        match before.and_then(value_of) {
             Some(value) => self.report(self.bare_components(Span { start: value.span.start, ..all })),
             None => {
                 let rest = pair.as_str()[1..].trim_ascii_start();
@@ -185,18 +173,6 @@ impl<'t> Builder<'t> {
     fn bare_components(&self, span: Span) -> Diagnostic {
         let commas = self.written(span).map_or(0, |text| text.matches(',').count());
         errors::bare_components(span, commas + 1)
-    }
-
-    /// `1 meter`: whether that is the slip.
-    pub(super) fn long_unit(&self, pair: &Node) -> bool {
-        let text = pair.as_str().trim_ascii_start();
-        let start = pair.as_span().end() - text.len();
-        let before = self.before(start).len();
-        let number = self.before(start).ends_with(|c: char| c.is_ascii_digit() || c == ')');
-        let word = errors::first_token(text);
-        let end = start + word.len();
-        let found = errors::long_unit(word, self.at(start, end), self.at(before, end)).filter(|_| number);
-        found.map(|diagnostic| self.report(diagnostic)).is_some()
     }
 
     /// Whether what begins with a comma between digits goes on with another, or closes an angle bracket.
@@ -283,6 +259,11 @@ impl<'t> Builder<'t> {
         if let Some(named) = self.named_otherwise(&name, &value, span).filter(|_| !is_reserved(&name.text)) {
             return named;
         }
+        if (top || self.holds_things())
+            && let Some(named) = self.named_with_colon(&name, &value, span)
+        {
+            return (named, 0);
+        }
         if let Some(declared) = self.type_before_name(&name, &value, span) {
             return (declared, 0);
         }
@@ -295,7 +276,9 @@ impl<'t> Builder<'t> {
             return (Entry::Broken(Broken { name, span }), 0);
         }
         if is_reserved(&name.text) && !field {
-            self.report(statements::begins_nothing(&name.text, name.span));
+            if !self.digit_first(&name.text, word.as_span().end()) {
+                self.report(statements::begins_nothing(&name.text, name.span));
+            }
         } else if !top && is_placement(&name.text) && value.as_str().starts_with('(') {
             self.report(errors::placement_alone(&name.text, name.span.to(value_span)));
         } else if let Some(color) = only(&value, Rule::angled_color).filter(|_| !top) {
@@ -339,30 +322,9 @@ impl<'t> Builder<'t> {
         Some(Entry::Broken(Broken { name: Some(name), span }))
     }
 
-    /// `sphere ball = { … }`: a thing whose body stands otherwise.
-    fn named_otherwise(&self, kind: &Name, value: &Node<'t>, span: Span) -> Option<Deep<Entry>> {
-        let mut inner = value.clone().into_inner();
-        let (first, sign) = (inner.next()?, inner.next());
-        let written = first.as_str().trim_ascii_end();
-        let place = self.trimmed(&first);
-        let sign = sign.filter(|sign| sign.as_rule() == Rule::foreign_equals && is_name(written))?;
-        let body = inner.next().filter(|body| body.as_rule() == Rule::bare_body)?.into_inner().next()?;
-        let name = Name { text: written.into(), span: place };
-        let edit = Span { start: place.end, end: self.span(&body).start, ..self.span(&sign) };
-        self.report(errors::sign_before_body(&format!("{} {written}", kind.text), "=", edit));
-        Some(match self.construct(vec![kind.clone()], body) {
-            (Some(construct), depth) => {
-                let thing = StatementKind::Thing { name: Some(name), construct };
-                self.checked(self.plain(thing, span), depth, span)
-            }
-            (None, depth) => (Entry::Broken(Broken { name: Some(name), span }), depth),
-        })
-    }
-
     /// Whether `x = 5` at this place is a definition without its word: in a part or a group, which have few fields.
     fn begins_definition(&self, word: &str) -> bool {
-        let holds_things = self.declares.get() || self.grouped.get();
-        holds_things && word != "material" && !PLACED_WORDS.contains(&word)
+        self.holds_things() && word != "material" && !PLACED_WORDS.contains(&word)
     }
 
     /// Whether what was taken for a value is the name of a field, with `:` behind it.
@@ -405,7 +367,7 @@ impl<'t> Builder<'t> {
             word if is_reserved(word) && word != "material" => statements::begins_nothing(word, name.span),
             word if top && errors::changes(self.after(word_end)) => errors::changed(word, name.span),
             word if top => errors::missing_body(word, name.span),
-            word => errors::lone_name(word, name.span),
+            word => errors::lone_name(word, name.span, self.holds_things()),
         });
         Entry::Broken(Broken { name: Some(name), span })
     }
@@ -429,14 +391,7 @@ impl<'t> Builder<'t> {
 
     /// `let ball = sphere radius: 1m`: whether the brace behind the kind is the slip.
     pub(super) fn headless(&self, pair: &Node, before: Option<&Entry>) -> bool {
-        let value = match before {
-            Some(Entry::Field(field)) => &field.value,
-            Some(Entry::Statement(statement)) => match &statement.kind {
-                StatementKind::Definition { value, .. } => value,
-                _ => return false,
-            },
-            _ => return false,
-        };
+        let Some(value) = before.and_then(value_of) else { return false };
         let ExprKind::Name(kind) = &value.kind else { return false };
         let rest = self.after(pair.as_span().start()).trim_ascii_start();
         let word = errors::first_token(rest);
@@ -489,6 +444,6 @@ fn only<'t>(value: &Node<'t>, rule: Rule) -> Option<Node<'t>> {
 }
 
 /// Whether a word makes a placement.
-fn is_placement(word: &str) -> bool {
+pub(super) fn is_placement(word: &str) -> bool {
     matches!(word, "scale" | "turn" | "move" | "matrix" | "rotate" | "translate")
 }

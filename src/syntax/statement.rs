@@ -1,10 +1,11 @@
 //! Statements that begin with a word of their own. The grammar takes what there is; here it is said what is
 //! missing.
 
-use super::ast::{Body, Broken, Entry, Expr, ExprKind, Name, Parameter, StatementKind, TypeName};
+use super::ast::{Body, Broken, Entry, Expr, ExprKind, Keyword, Name, Parameter, StatementKind, TypeName};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements as slips};
-use super::{BLANKS, RANGED_WORDS, TYPE_WORDS, branches, is_name, leading, literal, value};
+use super::functions::{function, is_closed, parameters, type_first, type_name};
+use super::{BLANKS, RANGED_WORDS, TYPE_WORDS, branches, is_name, literal, value};
 use crate::span::Span;
 use pest::iterators::Pairs;
 use smol_str::SmolStr;
@@ -40,6 +41,8 @@ pub(super) fn statement<'t>(builder: &Builder<'t>, pair: Node<'t>) -> Deep<Entry
         parts.filter(|part| part.as_rule() == Rule::body).for_each(|body| drop(builder.body(body)));
         return (Entry::Broken(Broken { name: None, span }), 0);
     }
+    let open = rule == Rule::function
+        && parts.clone().any(|part| part.as_rule() == Rule::parameters && !is_closed(&part));
     let (kind, depth) = match rule {
         Rule::param => param(builder, parts, span),
         Rule::part => part(builder, parts, span),
@@ -50,12 +53,29 @@ pub(super) fn statement<'t>(builder: &Builder<'t>, pair: Node<'t>) -> Deep<Entry
         Rule::assertion => branches::assertion(builder, parts),
         _ => return (unfinished(builder, parts, span), 0),
     };
-    builder.checked(builder.plain(kind, span), depth, span)
+    match kind {
+        // Of neither is it known what it takes: nothing is said of its uses.
+        StatementKind::Function { name, .. } if open => (Entry::Broken(Broken { name: Some(name), span }), 0),
+        StatementKind::Part { name, body } if body.span.range().is_empty() => {
+            (Entry::Broken(Broken { name: Some(name), span }), 0)
+        }
+        kind => builder.checked(builder.plain(kind, span), depth, span),
+    }
 }
 
 fn unfinished<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> Entry {
     let word = parts.next().expect("an unfinished statement begins with its word");
-    builder.report(slips::unfinished(word.as_str(), builder.span(&word)));
+    if builder.digit_first(word.as_str(), word.as_span().end()) {
+        return Entry::Broken(Broken { name: None, span });
+    }
+    let head = parts.peek().filter(|head| head.as_rule() == Rule::before_body && word.as_str() == "for");
+    builder.report(match head.filter(|head| head.as_str().starts_with('(')) {
+        Some(head) => {
+            let touches = !builder.all_before(head.as_span().start()).ends_with(BLANKS);
+            slips::head_in_parentheses(head.as_str().trim_ascii_end(), builder.trimmed(&head), touches)
+        }
+        None => slips::unfinished(word.as_str(), builder.span(&word)),
+    });
     // The body's own slips are still worth knowing.
     parts.filter(|part| part.as_rule() == Rule::body).for_each(|body| drop(builder.body(body)));
     Entry::Broken(Broken { name: None, span })
@@ -78,6 +98,38 @@ fn several_variables<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span
     }
     parts.filter(|part| part.as_rule() == Rule::body).for_each(|body| drop(builder.body(body)));
     Entry::Broken(Broken { name: None, span })
+}
+
+impl<'t> Builder<'t> {
+    /// `let a = 5`, `material glass = dielectric {}`
+    pub(super) fn definition(&self, keyword: &Node, mut inner: Pairs<'t, Rule>, span: Span) -> Deep<Entry> {
+        let name = self.name(&inner.next().expect("a definition has a name"));
+        let sign = inner.next().expect("a definition has `=` or `:`");
+        let bare = keyword.as_str() == "material"
+            && inner.peek().is_some_and(|value| super::branches::bare_body(&value).is_some());
+        let (value, depth) = match bare {
+            true => self.kindless("material", inner.next().expect("it was seen")),
+            false => self.expression(inner),
+        };
+        if matches!(sign.as_str(), ":" | ":=" | "==") {
+            let place = self.span(&sign);
+            // `let r: length 5cm`: what stands before the value is a type.
+            let behind = self.after(value.span.range().end - self.base()).trim_start_matches(BLANKS);
+            let is_type = matches!(value.kind, ExprKind::Name(_))
+                && behind.starts_with(|c: char| c.is_alphanumeric() || "#.\"".contains(c));
+            let end = if is_type { value.span.range().end - self.base() } else { sign.as_span().end() };
+            let edit = self.at(name.span.range().end - self.base(), end);
+            self.report(errors::colon_in_definition(keyword.as_str(), &name.text, place, edit));
+        } else if let Some(ty) = sign.clone().into_inner().next() {
+            let edit = self.at(name.span.range().end - self.base(), ty.as_span().end());
+            self.report(errors::type_in_definition(keyword.as_str(), &name.text, self.span(&ty), edit));
+        }
+        if is_reserved(&name.text) {
+            self.report(errors::reserved(&name.text, name.span));
+        }
+        let keyword = if keyword.as_str() == "let" { Keyword::Let } else { Keyword::Material };
+        (self.plain(StatementKind::Definition { keyword, name, value }, span), depth)
+    }
 }
 
 /// The name that a statement gives, with a complaint where it is none.
@@ -108,7 +160,7 @@ fn param<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> D
     let named = matches!(inner.as_rule(), Rule::type_name | Rule::type_list);
     let of = format!("`{}`", name.text);
     let behind = type_first(&name, inner.as_str(), builder.trimmed(&inner)).filter(|_| !has_colon);
-    let ty = match behind {
+    let mut ty = match behind {
         Some(behind) => {
             builder.report(slips::type_first(&name, &behind));
             TypeName::Named(std::mem::replace(&mut name, behind))
@@ -162,6 +214,12 @@ fn param<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -> D
         if !absent && !matches!(ty, TypeName::Invalid(_)) {
             builder.report(slips::missing_default(&name.text, place));
         }
+        // One that there is not is half typed.
+        if let TypeName::Named(word) = &ty
+            && !TYPE_WORDS.contains(&word.text.as_str())
+        {
+            ty = TypeName::Invalid(word.span);
+        }
         invalid(place)
     });
     (StatementKind::Param { name, ty, default, range }, depth + 1)
@@ -181,7 +239,7 @@ fn begins_range(default: &Node, ty: &TypeName) -> bool {
 }
 
 /// `:=` where `=` should stand.
-fn assigned(builder: &Builder, sign: &Node, word: &str) {
+pub(super) fn assigned(builder: &Builder, sign: &Node, word: &str) {
     if sign.as_str() != "=" {
         builder.report(slips::not_equals(word, builder.span(sign)));
     }
@@ -269,6 +327,16 @@ fn unquoted<'t>(builder: &Builder<'t>, mut parts: Pairs<'t, Rule>, span: Span) -
     let written = parts.next().expect("an import has a path");
     let place = builder.trimmed(&written);
     let path = written.as_str().trim_ascii_end();
+    if let Some((name, quoted)) = path.split_once(" from ").map(|(name, path)| (name.trim(), path.trim()))
+        && is_name(name)
+        && quoted.len() > 2
+        && quoted.starts_with('"')
+        && quoted.ends_with('"')
+    {
+        builder.report(slips::path_behind(name, quoted, place));
+        let name = Name { text: name.into(), span: Span { end: place.start + name.len() as u32, ..place } };
+        return Entry::Broken(Broken { name: Some(name), span });
+    }
     if !path.contains('\u{1}') {
         builder.report(slips::bare_path(path, place));
     }
@@ -282,151 +350,4 @@ fn stem(path: &str) -> Option<&str> {
     let file = path.rsplit('/').next()?;
     let stem = file.strip_suffix(".rt")?;
     is_name(stem).then_some(stem)
-}
-
-// --- Functions ---------------------------------------------------------------------------------------------
-
-fn function<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: Span) -> Deep<StatementKind> {
-    let mut parts = parts.peekable();
-    let name = declared(builder, parts.next());
-    let mut place = name.span;
-    let mut parameters = vec![];
-    // One complaint about the head is enough.
-    let mut complete = false;
-    match parts.next_if(|part| part.as_rule() == Rule::parameters) {
-        Some(pair) => {
-            place = builder.trimmed(&pair);
-            let known = builder.reported();
-            parameters = self::parameters(builder, pair);
-            complete = builder.reported() == known;
-        }
-        None => {
-            builder.report(slips::missing_parameters(place.after()));
-        }
-    }
-    let mut result = TypeName::Invalid(place.after());
-    match parts.next_if(|part| part.as_rule() == Rule::arrow) {
-        Some(arrow) => {
-            let sign = arrow.as_str().trim_ascii_end();
-            // Without its parameters, what the sign stands before may be one of them.
-            if sign != "->" && place != name.span {
-                let touches = !builder.all_before(arrow.as_span().start()).ends_with(super::BLANKS);
-                builder.report(slips::wrong_arrow(sign, builder.trimmed(&arrow), touches));
-            }
-            result = type_name(builder, parts.next().expect("a type follows"), "the result", "fn");
-        }
-        None if complete => {
-            complete = false;
-            let behind = builder.after(place.range().end - builder.base()).trim_ascii_start();
-            let typed = TYPE_WORDS.contains(&leading(behind, ""));
-            builder.report(match typed {
-                true => slips::missing_arrow(place.after()),
-                false => slips::missing_type("the result", place.after(), "fn"),
-            });
-        }
-        None => {}
-    }
-    let (value, depth) = match (parts.next(), parts.next()) {
-        (Some(sign), Some(value)) => {
-            assigned(builder, &sign, "fn");
-            value::expression(builder, value)
-        }
-        (Some(body), None) => {
-            let place = builder.span(&body);
-            builder.report(slips::function_braces(Span { end: place.start + 1, ..place }));
-            (invalid(place), 0)
-        }
-        _ => {
-            if complete {
-                builder.report(slips::missing_function_value(&name.text, span.after()));
-            }
-            (invalid(span.after()), 0)
-        }
-    };
-    (StatementKind::Function { name, parameters, result, value }, depth + 1)
-}
-
-fn parameters(builder: &Builder, pair: Node) -> Vec<Parameter> {
-    let mut found = vec![];
-    for pair in pair.into_inner() {
-        if pair.as_rule() == Rule::semicolon {
-            builder.semicolon(&pair);
-            continue;
-        }
-        let mut inner = pair.into_inner().peekable();
-        let mut parameter = inner.next_if(|part| part.as_rule() == Rule::word).map(|name| {
-            let name = declared(builder, Some(name));
-            let ty = TypeName::Invalid(name.span.after());
-            Parameter { name, ty }
-        });
-        let mut typed = false;
-        for part in inner {
-            let behind = parameter.as_ref().filter(|_| part.as_rule() == Rule::beyond && !typed);
-            if let Some(behind) =
-                behind.and_then(|first| type_first(&first.name, part.as_str(), builder.trimmed(&part)))
-                && let Some(parameter) = &mut parameter
-            {
-                typed = true;
-                builder.report(slips::type_first(&parameter.name, &behind));
-                parameter.ty = TypeName::Named(std::mem::replace(&mut parameter.name, behind));
-                continue;
-            }
-            match (&mut parameter, part.as_rule()) {
-                (_, Rule::beyond) => {
-                    typed = true;
-                    builder.unexpected(&part, slips::in_parameters);
-                }
-                (Some(parameter), _) => {
-                    typed = true;
-                    let of = format!("`{}`", parameter.name.text);
-                    parameter.ty = type_name(builder, part, &of, "fn");
-                }
-                (None, _) => {}
-            }
-        }
-        if let Some(parameter) = &parameter
-            && !typed
-        {
-            let of = format!("`{}`", parameter.name.text);
-            builder.report(slips::missing_type(&of, parameter.name.span.after(), "fn"));
-        }
-        found.extend(parameter);
-    }
-    found
-}
-
-/// `int count`: the name that stands behind a type in place of before it.
-fn type_first(ty: &Name, behind: &str, place: Span) -> Option<Name> {
-    let word = behind.trim_ascii();
-    let start = place.end - word.len() as u32;
-    let swapped = is_name(word) && TYPE_WORDS.contains(&ty.text.as_str()) && !TYPE_WORDS.contains(&word);
-    swapped.then(|| Name { text: SmolStr::new(word), span: Span { start, ..place } })
-}
-
-/// A type, of what is said in `of` in the statement that begins with `word`.
-fn type_name(builder: &Builder, pair: Node, of: &str, word: &str) -> TypeName {
-    let span = builder.trimmed(&pair);
-    match pair.as_rule() {
-        Rule::type_name => {
-            let name = builder.name(&pair.into_inner().next().expect("the type has a name"));
-            if is_reserved(&name.text) && &name.text != "material" {
-                builder.report(slips::not_a_type(&name.text, name.span));
-                return TypeName::Invalid(name.span);
-            }
-            TypeName::Named(name)
-        }
-        Rule::type_list => {
-            let inner = pair.into_inner().next().expect("the list has a type");
-            TypeName::List(Box::new(type_name(builder, inner, of, word)), span)
-        }
-        Rule::type_absent => {
-            let place = builder.behind(&pair);
-            builder.report(slips::missing_type(of, place, word));
-            TypeName::Invalid(place)
-        }
-        _ => {
-            builder.unexpected(&pair, slips::not_a_type);
-            TypeName::Invalid(span)
-        }
-    }
 }

@@ -2,6 +2,7 @@
 
 use super::angled;
 use super::ast::{BinaryOp, Expr, ExprKind, Name, Path, UnaryOp};
+use super::branches::is_half_typed;
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::elements::{elements, group, list};
 use super::errors::{self, statements};
@@ -170,6 +171,10 @@ fn infix(builder: &Builder, left: Deep<Expr>, operator: &Node, right: Deep<Expr>
             ExprKind::Binary { operator: BinaryOp::Pipe, at, left: Box::new(left), right: Box::new(right) };
         return checked(builder, Expr { kind, span }, 1 + left_depth.max(right_depth), at);
     }
+    // `if a =`: what is missing was said.
+    if rule == Rule::foreign_equals && matches!(right.kind, ExprKind::Invalid) {
+        return invalid(span);
+    }
     let operator = match binary(operator.as_str()).or_else(|| foreign(builder, operator, left.span)) {
         Some(operator) => operator,
         // What is asked, or given, is not known.
@@ -264,7 +269,7 @@ fn primary(builder: &Builder, pair: Node) -> Deep<Expr> {
             invalid(span)
         }
         Rule::bare_body => {
-            builder.report(errors::unexpected_value("{", Span { end: span.start + 1, ..span }));
+            builder.report(builder.bare_body(span));
             invalid(span)
         }
         Rule::absent | Rule::head_absent => absent(builder, &pair),
@@ -353,7 +358,7 @@ fn conditional(builder: &Builder, pair: Node) -> Deep<Expr> {
         .into_inner()
         .filter(|part| !matches!(part.as_rule(), Rule::if_word | Rule::then_word | Rule::else_word));
     let (condition, depth) = expression(builder, parts.next().expect("the grammar puts a condition here"));
-    let known = !matches!(condition.kind, ExprKind::Invalid);
+    let known = !is_half_typed(&condition);
     let Some(then) = parts.next() else {
         if known {
             let behind = builder.after(span.range().end - builder.base()).trim_ascii_start();

@@ -4,7 +4,7 @@ use crate::check::functions::Function;
 use crate::check::make::suggested_unit;
 use crate::check::types::{Element, Type, describe_wanted, list};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::schema::{FieldType, Word};
+use crate::schema::{Category, FieldType, Word};
 use crate::span::Span;
 use crate::syntax::ast::Name;
 use crate::units::{self, Dim};
@@ -75,6 +75,16 @@ pub(in crate::check) fn mismatch(
                     "such as `{place}`, or the name of a thing, which has no quotes"
                 ))
             }
+            (FieldType::Made(Category::Material), Type::Color) if text.len() < 60 && !text.contains('\n') => {
+                let made = format!("diffuse {{ color: {text} }}");
+                diagnostic
+                    .help(format!("a colour is that of a material: `{made}`"))
+                    .offer(format!("write `{made}`"), vec![(span, made)])
+            }
+            (FieldType::Scalar(_) | FieldType::Int, Type::Text) if is_quantity(text.trim_matches('"')) => {
+                let bare = text.trim_matches('"');
+                diagnostic.help(format!("a value has no quotes: `{bare}`")).fix(span, bare)
+            }
             (FieldType::Made(_), _) => diagnostic.help("such as `diffuse { color: #d94f30 }`"),
             (FieldType::Part(kind), Type::Scalar(element)) if kind == "lens" && element.dim() == units::LENGTH => {
                 diagnostic.help(format!("a lens has its fields in braces: `lens {{ focal: {text}, stop: 2.8 }}`"))
@@ -101,6 +111,15 @@ fn is_picture(text: &str) -> bool {
     let file = text.trim_matches('"').to_ascii_lowercase();
     text.len() < 60
         && [".png", ".jpg", ".jpeg", ".webp", ".hdr", ".exr"].iter().any(|end| file.ends_with(end))
+}
+
+/// Whether a text is a number with its unit.
+fn is_quantity(text: &str) -> bool {
+    let number = text.len() - text.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.').len();
+    let (number, unit) = text.split_at(number);
+    let sound =
+        number.starts_with(|c: char| c.is_ascii_digit()) && number.ends_with(|c: char| c.is_ascii_digit());
+    sound && number.matches('.').count() < 2 && (unit.is_empty() || units::parse_unit(unit).is_ok())
 }
 
 /// Whether a quoted text is the code of a colour.

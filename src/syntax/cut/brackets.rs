@@ -7,6 +7,11 @@ use crate::span::Span;
 impl Cutter<'_> {
     pub(super) fn open(&mut self) -> Last {
         let byte = self.bytes[self.at];
+        if byte == b'{' && self.shows_unclosed_head() {
+            let keep =
+                self.levels.iter().rposition(|level| level.bracket == b'{').map_or(0, |index| index + 1);
+            self.close_above(keep, Some(self.span(self.at, self.at + 1)));
+        }
         if self.beyond > 0 || self.levels.len() == self.most {
             if !self.skipped {
                 self.skipped = true;

@@ -3,8 +3,8 @@
 use super::super::{BLANKS, errors};
 use super::{Cutter, Last, is_word};
 
-/// The longest list of variables of a loop, in bytes, that is looked at: the time stays in proportion to the text.
-const MAX_HEAD: usize = 200;
+/// The longest head of a statement, in bytes, that is looked at: the time stays in proportion to the text.
+pub(super) const MAX_HEAD: usize = 200;
 
 /// The words that POV-Ray has before the parts of a colour in angle brackets.
 ///
@@ -47,6 +47,14 @@ impl Cutter<'_> {
         head.starts_with(BLANKS) && head.len() < MAX_HEAD && names
     }
 
+    /// Whether a comma at the top level stands between parameters without parentheses: `fn f a: int, b: length)`.
+    pub(super) fn is_among_parameters(&self) -> bool {
+        let head = self.item.and_then(|start| self.text[start..self.at].strip_prefix("fn "));
+        head.is_some_and(|head| {
+            head.len() < MAX_HEAD && head.contains(':') && !head.contains(['(', '=', '{'])
+        })
+    }
+
     /// `# a comment`, `-- a comment`, `#include`: what begins so is no value. A colour has its digits at once, and
     /// begins no entry.
     pub(super) fn begins_foreign_comment(&self) -> bool {
@@ -59,6 +67,7 @@ impl Cutter<'_> {
                 let apart = comments || matches!(next, b' ' | b'\t' | b'\x0c' | b'#' | b'!');
                 entry || apart && self.last == Last::Operand && self.splits
             }
+            b'<' => entry && self.text[self.at..].starts_with("<!--"),
             _ => entry && next == b'-',
         }
     }
@@ -73,11 +82,33 @@ impl Cutter<'_> {
             let place = self.span(start, start + 1 + word.len());
             self.out.sink.push(errors::directive(word, place));
         } else {
-            let sign = line.bytes().take_while(|&byte| byte == line.as_bytes()[0]).count();
+            let sign = match line.strip_prefix("<!") {
+                Some(dashes) => "<!".len() + dashes.bytes().take_while(|&byte| byte == b'-').count(),
+                None => line.bytes().take_while(|&byte| byte == line.as_bytes()[0]).count(),
+            };
             self.foreign_comments.push(self.span(start, start + sign));
         }
         self.blot(start, start + length);
         self.take(length, Last::Operand)
+    }
+
+    /// `for i = 0; i < 3; i++ {`: takes the head of a loop that counts for what it is meant as.
+    pub(super) fn counting_loop(&mut self) -> Option<Last> {
+        let start = self.item.filter(|_| self.levels.is_empty() && self.splits)?;
+        let before = &self.text[start..self.at];
+        if before.len() > MAX_HEAD || !before.starts_with("for ") || !before.contains('=') {
+            return None;
+        }
+        let near = self.text.floor_char_boundary((self.at + MAX_HEAD).min(self.text.len()));
+        let (rest, _) = self.text[self.at..near].split('\n').next()?.split_once('{')?;
+        let end = self.at + rest.trim_ascii_end().len();
+        if end == self.at + 1 {
+            return None;
+        }
+        let place = self.span(start + "for ".len(), end);
+        self.out.sink.push(errors::statements::counting_loop(place));
+        self.blot(start, end);
+        Some(self.take(rest.len(), Last::Operand))
     }
 
     /// One message for all the comments that begin otherwise.

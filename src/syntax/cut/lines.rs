@@ -3,6 +3,7 @@
 use super::super::NAMING_WORDS;
 use super::super::ast::Comment;
 use super::super::errors;
+use super::habits::MAX_HEAD;
 use super::{Cutter, Gap, Last, Level, is_word};
 use crate::span::Span;
 
@@ -243,6 +244,24 @@ impl<'t> Cutter<'t> {
             && self.levels.last().as_ref().is_some_and(beside)
             && around.is_some_and(|around| around.bracket == b'{' && around.indent < self.indent)
             && self.begins_item()
+    }
+
+    /// `for i in range(3 {`: whether a brace inside parentheses in the head of a statement follows what is no kind.
+    pub(super) fn shows_unclosed_head(&self) -> bool {
+        let Some(level) = self.levels.last().filter(|level| level.bracket != b'{') else { return false };
+        if self.beyond > 0 || self.last != Last::Operand {
+            return false;
+        }
+        let near = self.text.floor_char_boundary(level.at.saturating_sub(MAX_HEAD));
+        let line = self.text[near..level.at].rsplit('\n').next().unwrap_or("").trim_ascii_start();
+        let line = line.strip_prefix("} else ").unwrap_or(line);
+        let before = &self.bytes[..self.end];
+        let word = before.iter().rev().take_while(|&&byte| is_word(byte)).count();
+        let ends_value = match before[self.end - word..].first() {
+            Some(first) => first.is_ascii_digit(),
+            None => before.ends_with(b")") || before.ends_with(b"]"),
+        };
+        ends_value && (line.starts_with("for ") || line.starts_with("if "))
     }
 
     /// Whether the line begins what can stand in a body and not in the parentheses around it.

@@ -120,12 +120,75 @@ pub(in crate::syntax) fn quoted_name(text: &str, span: Span) -> Diagnostic {
     }
 }
 
+/// `"radius": 1m`
+pub(in crate::syntax) fn quoted_field(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, "the name of a field has no quotes", span)
+        .at("a text")
+        .help(format!("write `{name}: …`"))
+        .fix(span, name)
+}
+
+/// `radius: sqrt 4`, `material: diffuse red`; `shown` is what is given, as far as it is short, and `made` is whether a
+/// kind is wanted.
+pub(in crate::syntax) fn beside_name(
+    name: &str,
+    token: &str,
+    shown: &str,
+    made: bool,
+    span: Span,
+) -> Diagnostic {
+    let diagnostic = unexpected(token, span).at("a value stands before this already");
+    let is_name = shown.starts_with(|c: char| c.is_alphabetic() || c == '#');
+    diagnostic.help(match made {
+        true if is_name => format!("a kind has its fields in braces: `{name} {{ color: {shown} }}`"),
+        true => format!("a kind has its fields in braces: `{name} {{ … }}`"),
+        false => format!(
+            "what a function takes stands in parentheses: `{name}({shown})`; else a comma or an operator is missing"
+        ),
+    })
+}
+
 /// `sphere: { radius: 1m }`, `sphere = { radius: 1m }`
 pub(in crate::syntax) fn sign_before_body(kind: &str, sign: &str, edit: Span) -> Diagnostic {
     unexpected(sign, edit)
         .at("the body follows its kind at once")
         .help(format!("write `{kind} {{ … }}`"))
         .fix(edit, " ")
+}
+
+/// `material: { color: red }`, `lens: { focal: 50mm }`; `open` is the brace.
+pub(in crate::syntax) fn kindless_field(field: &str, open: Span) -> Option<Diagnostic> {
+    let diagnostic = unexpected("{", open).at("its kind belongs before this");
+    Some(match field {
+        "lens" => diagnostic.help("write `lens: lens { … }`").fix(open.before(), "lens "),
+        "material" => diagnostic
+            .help("name the kind of material: `diffuse { … }`")
+            .offer("make it `diffuse`", vec![(open.before(), "diffuse ".into())]),
+        _ => return None,
+    })
+}
+
+/// `sphere { material { color: red } }`
+pub(in crate::syntax) fn kindless_material(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, "`material` has no kind", span)
+        .at("`:` and a kind of material belong behind this")
+        .help("write `material: diffuse { … }`")
+        .offer("make it `diffuse`", vec![(span.after(), ": diffuse".into())])
+}
+
+/// Whether a text is that of several values, as a triple has them.
+pub(in crate::syntax) fn is_components(text: &str) -> bool {
+    text.contains(',')
+        && text.split(',').all(|part| !part.trim().is_empty() && !part.contains([':', '{', '\n']))
+}
+
+/// `at: {1, 2, 3}m`
+pub(in crate::syntax) fn components_in_braces(inside: &str, open: Span, close: Span) -> Diagnostic {
+    unexpected("{", open)
+        .at("a value belongs here")
+        .help(format!("values stand in parentheses: `({inside})`"))
+        .fix(open, "(")
+        .fix(close, ")")
 }
 
 /// `rgb <1, 0, 0>`, `color rgb <1, 0, 0>`. `field` is the name of the field before it, where `:` is missing
@@ -267,11 +330,15 @@ pub(in crate::syntax) fn power_of_unit(
 }
 
 /// `1 meter`: a unit is not written out. `place` is from behind the number.
-pub(in crate::syntax) fn long_unit(word: &str, span: Span, place: Span) -> Option<Diagnostic> {
+pub(in crate::syntax) fn long_unit(number: &str, word: &str, span: Span, place: Span) -> Option<Diagnostic> {
     let unit = units::spelt_out(word)?;
     let diagnostic =
         Diagnostic::new(Code::E0101, format!("unknown unit `{word}`"), span).at("not known here");
-    Some(diagnostic.help(format!("write `{unit}`, which touches its number: `1{unit}`")).fix(place, unit))
+    Some(
+        diagnostic
+            .help(format!("write `{unit}`, which touches its number: `{number}{unit}`"))
+            .fix(place, unit),
+    )
 }
 
 /// `[for i in list { … }]`, `[2 * i for i in list]`

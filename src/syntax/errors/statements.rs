@@ -4,6 +4,7 @@ use super::unexpected;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::span::Span;
 use crate::syntax::ast::{ExprKind, Name, Prefix};
+use crate::syntax::is_name;
 
 /// How the statement that begins with a word is written.
 fn form(word: &str) -> &'static str {
@@ -97,6 +98,14 @@ pub(in crate::syntax) fn range_first(name: &str, sign: Span, whole: Span) -> Dia
         .help("write `param name: type = value in low to high`")
 }
 
+/// `param r: length = 1m from 0m to 3m`
+pub(in crate::syntax) fn range_from(span: Span) -> Diagnostic {
+    unexpected("from", span)
+        .at("`in` is wanted")
+        .help("write `param name: type = value in low to high`")
+        .fix(span, "in")
+}
+
 /// `part p(h: length) { … }`
 pub(in crate::syntax) fn part_takes(name: &str, span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0001, format!("the part `{name}` takes no parameters"), span)
@@ -174,6 +183,30 @@ pub(in crate::syntax) fn missing_in(sign: &str, span: Span) -> Diagnostic {
     unexpected(sign, span).at("`in` is wanted").help(format!("write `{}`", form("for"))).fix(span, "in")
 }
 
+/// `for i = 0; i < 3; i++ { … }`
+pub(in crate::syntax) fn counting_loop(head: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, "a `for` goes through a list or a range", head)
+        .at("is written otherwise")
+        .help("write `for i in range(3) { … }`, where `i` is 0, 1 and 2")
+}
+
+/// `for (i in list) { … }`, `for (i = 0; i < 3; i++) { … }`; `touches` is whether the head does so the word before it.
+pub(in crate::syntax) fn head_in_parentheses(head: &str, span: Span, touches: bool) -> Diagnostic {
+    let inside = head.strip_prefix('(').and_then(|head| head.strip_suffix(')')).map(str::trim_ascii);
+    let inside = inside.filter(|inside| {
+        let name = crate::syntax::leading(inside, "");
+        let behind = inside[name.len()..].trim_ascii_start();
+        is_name(name) && crate::syntax::leading(behind, "") == "in"
+    });
+    let Some(inside) = inside else {
+        return counting_loop(span);
+    };
+    Diagnostic::new(Code::E0001, "the head of a `for` has no parentheses", span)
+        .at("no parentheses belong here")
+        .help(format!("write `for {inside} {{ … }}`"))
+        .fix(span, format!("{}{inside}", if touches { " " } else { "" }))
+}
+
 /// `for each i in list`; `span` is up to the second word.
 pub(in crate::syntax) fn named_twice(word: &str, name: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
@@ -246,6 +279,14 @@ pub(in crate::syntax) fn bare_path(path: &str, span: Span) -> Diagnostic {
     diagnostic
 }
 
+/// `import lantern from "lantern.rt"`
+pub(in crate::syntax) fn path_behind(name: &str, path: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, "the path of a file stands before its name", span)
+        .at("the other way round")
+        .help(format!("write `import {path} as {name}`"))
+        .fix(span, format!("{path} as {name}"))
+}
+
 /// `import "lantern.rt"`; `name` is what the file may be called, and `edit` what mends it at the place.
 pub(in crate::syntax) fn missing_as(name: Option<&str>, edit: Option<String>, place: Span) -> Diagnostic {
     let diagnostic = Diagnostic::new(Code::E0001, "the imported file has no name", place)
@@ -273,6 +314,12 @@ pub(in crate::syntax) fn missing_parameters(place: Span) -> Diagnostic {
 pub(in crate::syntax) fn bare_parameters(name: &str, span: Span) -> Diagnostic {
     missing(&format!("the parameters of `{name}` have no parentheses"), span, "fn")
         .at("`(…)` belongs around these")
+}
+
+/// Whether it tells of parameters without parentheses, so that their `)` closes nothing.
+pub(in crate::syntax) fn misses_parentheses(diagnostic: &Diagnostic) -> bool {
+    diagnostic.message.starts_with("the parameters of ")
+        && diagnostic.message.ends_with(" have no parentheses")
 }
 
 /// `for in list { … }`
@@ -323,10 +370,10 @@ pub(in crate::syntax) fn missing_function_value(name: &str, place: Span) -> Diag
     missing(&format!("`fn {name}` has no value"), place, "fn").at("`=` and a value belong here")
 }
 
-/// `fn f() -> number { … }`
-pub(in crate::syntax) fn function_braces(span: Span) -> Diagnostic {
+/// `fn f() -> number { … }`, `fn f() -> number = { … }`
+pub(in crate::syntax) fn function_braces(span: Span, behind_equals: bool) -> Diagnostic {
     unexpected("{", span)
-        .at("`=` is wanted")
+        .at(if behind_equals { "one value belongs here" } else { "`=` is wanted" })
         .help("the body of a function is one value: `fn name(a: type) -> type = value`")
 }
 
