@@ -21,11 +21,7 @@ fn pictures_are_the_same_to_the_bit() {
 #[test]
 fn examples_are_the_same_to_the_bit() {
     let stamp = Overrides { size: Some([96, 72]), samples: Some(8), ..Overrides::default() };
-    insta::glob!(env!("CARGO_MANIFEST_DIR"), "examples/**/*.rt", |path| check(
-        path,
-        "cases/examples",
-        &stamp
-    ));
+    insta::glob!("../examples", "**/*.rt", |path| check(path, "cases/examples", &stamp));
 }
 
 fn check(path: &Path, folder: &str, overrides: &Overrides) {

@@ -89,7 +89,7 @@ fn shown_error(desk: &Desk, picture: &str, truth: &str) -> f64 {
 #[test]
 fn no_example_is_worse_than_with_its_noise() {
     let desk = Desk::new();
-    insta::glob!(env!("CARGO_MANIFEST_DIR"), "examples/**/*.rt", |scene| {
+    insta::glob!("../../examples", "**/*.rt", |scene| {
         let scene = scene.display();
         let build = |rest: &str| desk.run(&format!("build {scene} --size 48x36 -q {rest}")).expect(0, &[]);
         build("--samples 8 --denoise -o both.exr -o clean.png");
