@@ -4,7 +4,7 @@ use super::angled;
 use super::ast::{Argument, Broken, Entry, Expr, ExprKind, Field, Name, StatementKind, TypeName};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements};
-use super::{BLANKS, PLACED_WORDS, is_name, is_word, leading, value};
+use super::{BLANKS, PLACED_WORDS, beside, is_name, is_word, leading, value};
 use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 use pest::iterators::Pairs;
@@ -389,8 +389,12 @@ impl<'t> Builder<'t> {
         self.unexpected(pair, |token, span| errors::unexpected_in_brackets(token, span, closer, behind));
     }
 
-    /// `let ball = sphere radius: 1m`: whether the brace behind the kind is the slip.
+    /// `let ball = sphere radius: 1m`: whether the brace behind the kind is the slip. Behind the name of a value it is a comma:
+    /// `color: red roughness: 20%`.
     pub(super) fn headless(&self, pair: &Node, before: Option<&Entry>) -> bool {
+        if before.is_some_and(|before| matches!(before, Entry::Field(_)) && !beside::is_made(before)) {
+            return false;
+        }
         let Some(value) = before.and_then(value_of) else { return false };
         let ExprKind::Name(kind) = &value.kind else { return false };
         let rest = self.after(pair.as_span().start()).trim_ascii_start();
