@@ -208,8 +208,9 @@ impl<'t> Builder<'t> {
             self.report(statements::begins_nothing(&name.text, name.span));
         } else if top || self.begins_definition(&name.text) {
             // `n = n + 1`
-            let changes =
-                given.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|word| word == name.text);
+            let changes = given
+                .strip_prefix(name.text.as_str())
+                .is_some_and(|rest| rest.trim_ascii_start().starts_with(['+', '-', '*', '/']));
             self.report(match changes {
                 true => errors::changed(&name.text, name.span),
                 false => errors::missing_let(&name.text, name.span),
