@@ -66,20 +66,32 @@ fn examples_are_laid_out() {
 /// Where comments may stand in a file that is fine, it stays fine.
 #[test]
 fn comments_between_tokens_stay_fine() {
-    let assertion = ["assert", "1 < 2", ",", "\"x\""];
-    let param = ["param", "a", ":", "int", "=", "1", "in", "1 to 2"];
-    let function = ["fn", "f", "(", "a", ":", "int", ")", "->", "int", "=", "a"];
-    let repeated =
-        ["for", "i", "in", "range", "(", "3", ")", "{", "sphere", "{", "radius", ":", "1m", "}", "}"];
-    for tokens in [&assertion[..], &param, &function, &repeated] {
-        for index in 1..tokens.len() {
-            let (before, behind) = tokens.split_at(index);
-            let text = format!("{} /* why */ {}\n", before.join(" "), behind.join(" "));
-            let (formatted, slips) = format(SOURCE, &text);
-            assert_eq!(slips, [], "{text}");
-            assert_eq!(format(SOURCE, &formatted), (formatted.clone(), vec![]), "{text}");
+    let entries = [
+        "assert 1 < 2 , \"x\"",
+        "param a : int = 1 in 1 to 2",
+        "fn f ( a : int ) -> int = a",
+        "for i in range ( 3 ) { sphere { radius : 1m } }",
+        "@off sphere ball { material : metal { color : a * 2 } }",
+        "let a = if b then mirror { } else if c then metal { } else diffuse { }",
+        "if a { plane { } } else if b { } else { }",
+        "part post { param h : [ length ] = [ 1m ] \n box { } }",
+        "let a = b . c - f ( x : 2 ) * ( 1 , 2 , - 3 )",
+        "import \"lantern.rt\" as lantern",
+    ];
+    // On its line, at the end of one, and on its own, with what follows indented, as behind a line end in an entry.
+    let comments = ["/* why */", "// why\n   ", "\n    // why\n   ", "/* why */ // and more\n   "];
+    let mut fine = 0;
+    for (entry, comment) in entries.into_iter().flat_map(|entry| comments.map(|comment| (entry, comment))) {
+        for (at, _) in entry.match_indices(' ') {
+            let (before, behind) = entry.split_at(at);
+            let text = format!("{before} {comment} {behind}\n");
+            check(&text);
+            let is_fine = format(SOURCE, &text).1.is_empty();
+            assert!(is_fine || comment.contains('\n'), "{text}");
+            fine += usize::from(is_fine && comment.contains('\n'));
         }
     }
+    assert!(fine > 200, "{fine}");
 }
 
 fn check(text: &str) {

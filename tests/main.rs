@@ -31,3 +31,4 @@ mod scenes;
 mod script;
 mod trust;
 mod why;
+mod work;

@@ -2,12 +2,13 @@
 
 use crate::dump;
 use crate::fuzz::texts;
+use crate::work::work;
 use proptest::prelude::*;
 use rt_lang::diagnostic::{Code, Diagnostic};
 use rt_lang::span::SourceId;
 use rt_lang::syntax::ast::{Body, Entry, ExprKind, File, StatementKind, TypeName};
 use rt_lang::syntax::{parse, parse_expression};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 const SOURCE: SourceId = SourceId(0);
 
@@ -107,12 +108,11 @@ fn the_grammar_knows_every_unit() {
 
 // --- Hostile texts -----------------------------------------------------------------------------------------
 
-/// Runs on a stack as small as a worker thread's, and says how long it took.
+/// Runs on a stack as small as a worker thread's, and says how much work it was.
 fn on_small_stack(text: String) -> (Duration, Vec<Diagnostic>) {
     let run = move || {
-        let start = Instant::now();
-        let diagnostics = read(&text).1;
-        (start.elapsed(), diagnostics)
+        let (time, (_, diagnostics)) = work(|| read(&text));
+        (time, diagnostics)
     };
     std::thread::Builder::new().stack_size(2 << 20).spawn(run).unwrap().join().unwrap()
 }
@@ -236,7 +236,7 @@ fn time_is_in_proportion_to_the_text() {
         let measured = || (time(100_000), time(400_000));
         let proportional =
             |(short, long): &(Duration, Duration)| *long < *short * 12 + Duration::from_millis(100);
-        // A busy machine can hold up one run; what is out of proportion is so every time.
+        // Other programs push it out of the caches; what is out of proportion is so every time.
         let mut runs = std::iter::repeat_with(measured).take(3);
         assert!(runs.any(|run| proportional(&run)), "{seed:?} takes more than its share of time");
     }

@@ -265,19 +265,23 @@ impl<'a> Keeper<'a> {
             };
             cannot(format!("it {why}"), help)
         })?;
-        const ELSEWHERE: &str = "`--checkpoint=FILE` keeps the samples elsewhere, `rtc develop` makes a picture of those that are \
-                                 there, and `--resume=never` begins afresh and replaces them";
+        const REPLACES: &str = "`rtc develop` makes a picture of those that are there, and `--resume=never` begins afresh and replaces them";
+        let otherwise = match self.places.yields {
+            // The frames of a film are kept beside them.
+            true => REPLACES.to_string(),
+            false => format!("`--checkpoint=FILE` keeps the samples elsewhere, {REPLACES}"),
+        };
         match self.subject.refuses(&saved.subject, CALLED) {
             Some(why) if self.places.yields => {
                 self.say_begun_anew(path, &why);
                 return Ok(None);
             }
-            Some(why) => return Err(cannot(why, ELSEWHERE)),
+            Some(why) => return Err(cannot(why, &otherwise)),
             None => {}
         }
         // What is there of the very picture is not thrown away for a limit or a look that was mistaken, in a film either.
         match refuses(&saved.making) {
-            Some(why) => Err(cannot(why, ELSEWHERE)),
+            Some(why) => Err(cannot(why, &otherwise)),
             None => {
                 self.refuse_loss(path, &saved.making)?;
                 self.last.1 = saved.making.mean_samples();
@@ -302,7 +306,10 @@ impl<'a> Keeper<'a> {
         Err(Problem::new(format!(
             "`{to}` would be replaced by the checkpoint, and holds share {index}/{of} of {samples} samples"
         ))
-        .help("remove it, or name another file: `--checkpoint=FILE`"))
+        .help(match self.places.yields {
+            true => "remove it, or give the frames another name",
+            false => "remove it, or name another file: `--checkpoint=FILE`",
+        }))
     }
 
     /// Refuses to replace samples that are kept under the one name by others that are gone on with from the other, unless these

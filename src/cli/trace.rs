@@ -120,6 +120,11 @@ impl<'a> Plan<'a> {
         self.from
     }
 
+    /// What its samples are of.
+    pub fn subject(&self) -> Subject {
+        subject(self.from.scene, self.window, self.share)
+    }
+
     /// What is traced of the picture.
     pub fn window(&self) -> Window {
         self.window
@@ -271,6 +276,12 @@ pub fn take(from: Provenance, window: Window, control: Arc<Control>) -> Result<T
     tracing.finish(&making, limit, &[], None)
 }
 
+/// What samples of a window, or of a share of them, are of.
+fn subject(scene: &Scene, window: Window, share: Option<Share>) -> Subject {
+    let identity = Identity::new(scene, [window.x, window.y, window.width, window.height]);
+    Subject { program: Facts::unknown().software, identity, share }
+}
+
 /// A picture being traced.
 struct Tracing<'a> {
     from: Provenance<'a>,
@@ -306,8 +317,7 @@ impl<'a> Tracing<'a> {
             tonemap: Some(shown.tonemap),
             ..Facts::unknown()
         };
-        let identity = Identity::new(scene, [window.x, window.y, window.width, window.height]);
-        let subject = Subject { program: facts.software.clone(), identity, share };
+        let subject = subject(scene, window, share);
         Ok(Tracing { from, tracer, prepass, shown, limits, subject, facts, control })
     }
 

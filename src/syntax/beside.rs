@@ -92,7 +92,7 @@ impl Builder<'_> {
 }
 
 /// Whether the value of an entry is certainly made by a kind.
-fn is_made(entry: &Entry) -> bool {
+pub(super) fn is_made(entry: &Entry) -> bool {
     match entry {
         Entry::Field(field) => matches!(field.name.text.as_str(), "material" | "lens"),
         Entry::Statement(statement) => {

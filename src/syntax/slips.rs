@@ -4,7 +4,7 @@ use super::angled;
 use super::ast::{Argument, Broken, Entry, Expr, ExprKind, Field, Name, StatementKind, TypeName};
 use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::errors::{self, statements};
-use super::{BLANKS, PLACED_WORDS, is_name, is_word, leading, value};
+use super::{BLANKS, PLACED_WORDS, beside, is_name, is_word, leading, value};
 use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 use pest::iterators::Pairs;
@@ -208,8 +208,9 @@ impl<'t> Builder<'t> {
             self.report(statements::begins_nothing(&name.text, name.span));
         } else if top || self.begins_definition(&name.text) {
             // `n = n + 1`
-            let changes =
-                given.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|word| word == name.text);
+            let changes = given
+                .strip_prefix(name.text.as_str())
+                .is_some_and(|rest| rest.trim_ascii_start().starts_with(['+', '-', '*', '/']));
             self.report(match changes {
                 true => errors::changed(&name.text, name.span),
                 false => errors::missing_let(&name.text, name.span),
@@ -389,8 +390,12 @@ impl<'t> Builder<'t> {
         self.unexpected(pair, |token, span| errors::unexpected_in_brackets(token, span, closer, behind));
     }
 
-    /// `let ball = sphere radius: 1m`: whether the brace behind the kind is the slip.
+    /// `let ball = sphere radius: 1m`: whether the brace behind the kind is the slip. Behind the name of a value it is a comma:
+    /// `color: red roughness: 20%`.
     pub(super) fn headless(&self, pair: &Node, before: Option<&Entry>) -> bool {
+        if before.is_some_and(|before| matches!(before, Entry::Field(_)) && !beside::is_made(before)) {
+            return false;
+        }
         let Some(value) = before.and_then(value_of) else { return false };
         let ExprKind::Name(kind) = &value.kind else { return false };
         let rest = self.after(pair.as_span().start()).trim_ascii_start();

@@ -213,6 +213,7 @@ fn a_film_never_replaces_what_one_of_its_frames_reads() {
     };
     desk.put("frame.rt", middle("f.1.png"));
     desk.put("kept.rt", middle("w.webp.frames/000003.exr"));
+    desk.put("slashes.rt", middle(".//f.1.png"));
     desk.put("g.2.png.made", "let size = 1m\n");
     desk.put("g.2.png", desk.get("f.2.png"));
     desk.put("record.rt", format!("import \"g.2.png.made\" as record\n{ball}"));
@@ -220,6 +221,7 @@ fn a_film_never_replaces_what_one_of_its_frames_reads() {
     desk.put("checkpoint.rt", format!("import \"h.3.png.checkpoint\" as kept\n{ball}"));
     for (scene, rest, file) in [
         ("frame.rt", "-o f.{}.png", "f.1.png"),
+        ("slashes.rt", "-o f.{}.png", "f.1.png"),
         ("kept.rt", "-o w.webp --resume", "w.webp.frames/000003.exr"),
         ("record.rt", "-o g.{}.png --resume", "g.2.png.made"),
         ("checkpoint.rt", "-o h.{}.png --resume", "h.3.png.checkpoint"),
@@ -228,6 +230,9 @@ fn a_film_never_replaces_what_one_of_its_frames_reads() {
         film(scene, rest).expect(2, &[&format!("`{file}` would be replaced")]);
         assert!(desk.get(file) == before, "{file} was replaced");
     }
+    // What a comment names is read by none.
+    desk.put("comment.rt", format!("/* -o \"f.1.png\" */ // \"f.2.png\"\n{ball}"));
+    film("comment.rt", "-o f.{}.png").expect(0, &[]);
     // Nor what it writes beside it meanwhile.
     desk.put(".rtc-n.png.tmp", "let size = 1m\n");
     desk.put("aside.rt", format!("import \".rtc-n.png.tmp\" as aside\n{ball}"));

@@ -256,8 +256,12 @@ fn a_checkpoint_beside_a_frame_that_is_done_is_removed_unless_it_has_more() {
     leave(3);
     film(&desk, "-o f{}.png").expect(0, &["frame 1 of 3 is done"]);
     assert!(desk.path("f1.png.checkpoint").exists());
+    // Nor is another picture's removed.
+    desk.run("build ball.rt -q --size 16x12 --samples 2 --checkpoint=f2.png.checkpoint -o other.png")
+        .expect(0, &[]);
     leave(2);
     film(&desk, "-o f{}.png").expect(0, &["frame 1 of 3 is done"]);
+    assert!(desk.path("f2.png.checkpoint").exists());
     assert!(!desk.path("f1.png.checkpoint").exists());
 }
 

@@ -1,8 +1,8 @@
 //! Long texts are answered in a time that grows as they do, and no longer than the answer is wanted.
 
 use super::{analysed, root};
+use crate::work::work;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::{Duration, Instant};
 
 /// Materials, each with a sphere that names it.
 fn text(lines: usize) -> String {
@@ -12,25 +12,17 @@ fn text(lines: usize) -> String {
     (0..lines).map(line).collect()
 }
 
-/// How long the quickest of some tries takes: of so many that the machine is not busy with something else in all of them.
-fn quickest(mut run: impl FnMut()) -> Duration {
-    let time = |_| {
-        let start = Instant::now();
-        run();
-        start.elapsed()
-    };
-    (0..20).map(time).min().unwrap()
-}
-
 #[test]
 fn the_words_of_a_long_text_are_soon_known() {
     let time = |lines: usize| {
         let text = text(lines);
         let analysis = analysed(&root(), "long.rt", &text);
-        let mut found = 0;
-        let time = quickest(|| found = analysis.tokens(0..text.len(), &|| false).len());
-        assert_eq!(found, 13 * lines);
-        time
+        let run = |_| {
+            let (time, found) = work(|| analysis.tokens(0..text.len(), &|| false).len());
+            assert_eq!(found, 13 * lines);
+            time
+        };
+        (0..5).map(run).min().unwrap()
     };
     // Ten times as much takes about ten times as long; with the square of the length it would be a hundred times.
     let (short, long) = (time(1_000), time(10_000));

@@ -109,10 +109,19 @@ pub(in crate::check) fn unknown_prefix(name: &Name) -> Diagnostic {
 
 pub(in crate::check) fn prefix_arguments(prefix: &Prefix) -> Diagnostic {
     let word = &prefix.name.text;
-    Diagnostic::new(Code::E0201, format!("`@{word}` takes no arguments"), prefix.span)
-        .at("arguments here")
-        .help(format!("write `@{word}`"))
-        .fix(prefix.span, format!("@{word}"))
+    let diagnostic = Diagnostic::new(Code::E0201, format!("`@{word}` takes no arguments"), prefix.span)
+        .at("arguments here");
+    if prefix.arguments.as_ref().is_none_or(Vec::is_empty) {
+        return diagnostic.help(format!("write `@{word}`")).fix(prefix.span, format!("@{word}"));
+    }
+    // `@off(false)`
+    let edit = |text: String| vec![(prefix.span, text)];
+    diagnostic
+        .help(format!(
+            "write `@{word}` where it holds, and nothing where it does not; `if … {{ … }}` chooses"
+        ))
+        .offer(format!("write `@{word}`"), edit(format!("@{word}")))
+        .offer("leave it out", edit(String::new()))
 }
 
 pub(in crate::check) fn prefix_on_what(prefix: &Prefix) -> Diagnostic {

@@ -294,11 +294,12 @@ impl Studio<'_, '_> {
         Ok(Shot::Made(shown, traced.facts))
     }
 
-    /// Removes the checkpoint that was left beside a frame that is done, unless there may be more in it.
+    /// Removes the checkpoint of a frame that was left when that was done, unless there may be more in it.
     fn clear(&self, targets: &[Target], plan: &Plan) -> Result<(), Problem> {
         let Limits { samples, noise, time, .. } = *plan.limits();
         let has_no_more = |head: &Head| head.facts.samples.is_some_and(|[_, most]| most <= samples);
-        remove_checkpoint(targets, |head| (noise, time) == (None, None) && has_no_more(head))
+        let is_fixed = (noise, time) == (None, None);
+        remove_checkpoint(targets, |head| is_fixed && head.subject == plan.subject() && has_no_more(head))
     }
 
     /// What is probably not meant in a frame. An exposure that another frame chose may well burn this one out.

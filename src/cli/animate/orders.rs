@@ -249,9 +249,44 @@ fn refuse_what_films_cannot(arguments: &Build) -> Result<(), Problem> {
     }
 }
 
-/// The files that texts of a source may name, as a person would write them.
+/// The files that texts of a source may name, as a person would write them. It may not even be of the language.
 fn texts(source: &Source) -> impl Iterator<Item = PathBuf> {
     let folder = Path::new(&source.name).parent().unwrap_or(Path::new(""));
-    let code = source.text.lines().map(|line| line.split("//").next().unwrap_or(""));
-    code.flat_map(|code| code.split('"').skip(1).step_by(2)).map(|text| folder.join(text))
+    let mut rest = source.text.as_str();
+    let behind = |text: &'_ str, end: &str| text.find(end).map_or(text.len(), |at| at + end.len());
+    let next = move || {
+        while let Some(at) = rest.find(['"', '/']) {
+            rest = &rest[at..];
+            if rest.starts_with("//") {
+                rest = &rest[behind(rest, "\n")..];
+            } else if rest.starts_with("/*") {
+                rest = &rest[behind(rest, "*/")..];
+            } else if let Some(text) = rest.strip_prefix('"') {
+                let (name, length) = unquoted(text);
+                rest = &text[length..];
+                return Some(folder.join(name));
+            } else {
+                rest = &rest[1..];
+            }
+        }
+        None
+    };
+    std::iter::from_fn(next)
+}
+
+/// What a text says, up to its quote or the end of its line, and how much that takes.
+fn unquoted(text: &str) -> (String, usize) {
+    let (mut said, mut escaped) = (String::new(), false);
+    for (at, c) in text.char_indices() {
+        match c {
+            '\n' => return (said, at),
+            '"' if !escaped => return (said, at + 1),
+            '\\' if !escaped => escaped = true,
+            c => {
+                said.push(c);
+                escaped = false;
+            }
+        }
+    }
+    (said, text.len())
 }

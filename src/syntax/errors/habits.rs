@@ -231,6 +231,16 @@ pub(in crate::syntax) fn bare_components(span: Span, count: usize) -> Diagnostic
 
 /// `radius: 1,5m`
 pub(in crate::syntax) fn decimal_comma(whole: &str, rest: &str, span: Span, comma: Span) -> Diagnostic {
+    // `1,200W` is 1200 W in some countries.
+    let behind = rest.bytes().take_while(u8::is_ascii_digit).count();
+    if behind == 3 && whole.len() <= 3 && !whole.starts_with('0') {
+        let [point, none] = [".", ""].map(|sign| format!("{whole}{sign}{rest}"));
+        return Diagnostic::new(Code::E0008, format!("`{whole},{rest}` has a comma"), span)
+            .at("a number has none")
+            .help(format!("write `{point}` for what has a decimal comma, or `{none}` for thousands"))
+            .offer(format!("write `{none}`"), vec![(comma, String::new())])
+            .offer(format!("write `{point}`"), vec![(comma, ".".to_string())]);
+    }
     Diagnostic::new(Code::E0008, format!("`{whole},{rest}` has a decimal comma"), span)
         .at("a point is wanted")
         .help(format!("write a point: `{whole}.{rest}`"))

@@ -13,6 +13,8 @@ pub(super) enum Doc<'t> {
     Soft,
     /// A line end. At the beginning of a line it does nothing, as the other line ends.
     Hard,
+    /// A line end in the middle of an entry. What follows of that is [`hung`], or it would begin another one.
+    Hang,
     /// A blank line before the line that follows, where the group is broken.
     Blank,
     /// A comma where the group is not broken.
@@ -27,6 +29,22 @@ pub(super) enum Doc<'t> {
 pub(super) fn group(docs: Vec<Doc>) -> Doc {
     let width = width_of(&docs);
     Doc::Group(docs, width)
+}
+
+/// The same with what stands behind the first [`Doc::Hang`] indented.
+pub(super) fn hung(mut docs: Vec<Doc>) -> Vec<Doc> {
+    if let Some(first) = docs.iter().position(Doc::hangs) {
+        let rest = docs.split_off(first);
+        docs.push(Doc::Nest(rest));
+    }
+    docs
+}
+
+impl Doc<'_> {
+    /// Whether it is a [`Doc::Hang`].
+    pub(super) fn hangs(&self) -> bool {
+        matches!(self, Doc::Hang)
+    }
 }
 
 fn width_of(docs: &[Doc]) -> Option<usize> {
@@ -53,7 +71,7 @@ fn width(doc: &Doc) -> Option<usize> {
         }
         Doc::Line | Doc::Comma => Some(1),
         Doc::Soft | Doc::Blank => Some(0),
-        Doc::Hard => None,
+        Doc::Hard | Doc::Hang => None,
         Doc::Nest(docs) => width_of(docs),
         Doc::Group(_, width) => *width,
     }
@@ -71,7 +89,7 @@ pub(super) fn render(docs: &[Doc], width: usize) -> String {
             Doc::Line if broken => page.end_line(indent),
             Doc::Line => page.write(" ", indent),
             Doc::Soft if broken => page.end_line(indent),
-            Doc::Hard => page.end_line(indent),
+            Doc::Hard | Doc::Hang => page.end_line(indent),
             Doc::Blank => page.blank |= broken,
             Doc::Comma if !broken => page.write(",", indent),
             Doc::Soft | Doc::Comma => {}
@@ -103,7 +121,7 @@ fn behind(rest: &[Step], mut left: usize) -> bool {
         };
         let needed = match doc {
             Doc::Line | Doc::Soft if broken => return true,
-            Doc::Hard => return true,
+            Doc::Hard | Doc::Hang => return true,
             Doc::Comment(text) if text.starts_with("//") => return true,
             Doc::Text(text) => text.lines().next().unwrap_or("").chars().count(),
             Doc::Comment(text) => 1 + text.lines().next().unwrap_or("").chars().count(),

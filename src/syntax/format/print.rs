@@ -10,7 +10,7 @@ use super::super::ast::{
     Argument, BinaryOp, Body, Comment, Construct, Entry, Expr, ExprKind, Name, Parameter, Path, Prefix,
     Statement, StatementKind, TypeName, UnaryOp,
 };
-use super::doc::{Doc, group};
+use super::doc::{Doc, group, hung};
 use crate::span::Span;
 use std::ops::Range;
 
@@ -110,17 +110,17 @@ impl<'t> Printer<'t> {
         }
     }
 
-    /// The comments before a token inside an entry.
+    /// The comments before a token inside an entry, which [hang](Doc::Hang).
     fn lead(&mut self, offset: usize, out: &mut Docs<'t>) {
         while let Some((comment, range)) = self.next_before(offset) {
             self.printed += 1;
             let before = self.text[..range.start].trim_end_matches(BLANKS);
             if before.ends_with('\n') {
-                out.push(Doc::Hard);
+                out.push(Doc::Hang);
             }
             out.push(Doc::Comment(comment));
             let ends = comment.starts_with("//") || self.newlines(range.end..offset.max(range.end)) > 0;
-            out.push(if ends { Doc::Hard } else { Doc::Text(" ") });
+            out.push(if ends { Doc::Hang } else { Doc::Text(" ") });
         }
     }
 
@@ -196,7 +196,12 @@ impl<'t> Printer<'t> {
                 out.push(Doc::Text(": "));
                 self.expr(&field.value, out);
             }
-            Unit::Entry(Entry::Statement(statement)) => self.statement(statement, out),
+            Unit::Entry(Entry::Statement(statement)) => {
+                self.prefixes(statement, out);
+                let mut inner = vec![];
+                self.statement(statement, &mut inner);
+                out.extend(hung(inner));
+            }
             Unit::Entry(Entry::Broken(broken)) => self.verbatim(broken.span.range(), out),
             Unit::Entry(Entry::Rows(rows)) => self.verbatim(rows.span().range(), out),
             Unit::Verbatim(range) => self.verbatim(range.clone(), out),
@@ -252,15 +257,21 @@ impl<'t> Printer<'t> {
 
     // --- Statements -----------------------------------------------------------------------------------------
 
-    fn statement(&mut self, statement: &'t Statement, out: &mut Docs<'t>) {
+    fn prefixes(&mut self, statement: &'t Statement, out: &mut Docs<'t>) {
         for (index, prefix) in statement.prefixes.iter().enumerate() {
             self.prefix(prefix, out);
             let next = statement.prefixes.get(index + 1).map_or(statement.span, |next| next.span);
             self.trail(end(prefix.span), start(next), out);
             let ends = self.newlines(end(prefix.span)..start(next)) > 0;
             out.push(if ends { Doc::Hard } else { Doc::Text(" ") });
-            self.lead(start(next), out);
+            // Statements stand below their prefixes, and not behind.
+            let mut between = vec![];
+            self.lead(start(next), &mut between);
+            out.extend(between.into_iter().map(|doc| if doc.hangs() { Doc::Hard } else { doc }));
         }
+    }
+
+    fn statement(&mut self, statement: &'t Statement, out: &mut Docs<'t>) {
         match &statement.kind {
             StatementKind::Thing { name, construct } => {
                 self.path(&construct.kind, out);
@@ -303,7 +314,10 @@ impl<'t> Printer<'t> {
             StatementKind::Import { path, name } => {
                 out.push(Doc::Text("import "));
                 self.name(path, out);
-                out.push(Doc::Text(" as "));
+                // The line may end before `as`, and not behind it.
+                out.push(Doc::Text(" "));
+                self.lead(start(name.span), out);
+                out.push(Doc::Text("as "));
                 self.name(name, out);
             }
             StatementKind::Function { name, parameters, result, value } => {
@@ -341,6 +355,7 @@ impl<'t> Printer<'t> {
                     inner.push(Doc::Text(","));
                     self.trail(end(condition.span), start(message.span), &mut inner);
                     let mut behind = vec![Doc::Line];
+                    self.lead(start(message.span), &mut behind);
                     self.expr(message, &mut behind);
                     inner.push(Doc::Nest(behind));
                 }

