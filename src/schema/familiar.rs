@@ -1,11 +1,11 @@
-//! What other tools call the fields and kinds that have another name here: for hints beyond spelling.
+//! What other tools call the fields, kinds and functions that have another name here: for hints beyond spelling.
 
 use super::Category;
 
 /// What a name from elsewhere means here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Familiar {
-    /// The name that it has here, if it is one field or kind.
+    /// The name that it has here, if it is one field, kind or function.
     pub name: Option<&'static str>,
     /// Whether the value can stay as it is, so that the name alone is replaced.
     pub same_value: bool,
@@ -273,6 +273,68 @@ pub fn kind(name: &str) -> Option<Familiar> {
         "union" | "object" | "node" | "scene" | "world" => {
             rewritten("group", "things are put together in a `group`")
         }
+        _ => return None,
+    })
+}
+
+/// What a function that there is not is called here, or how one does without it.
+pub fn function(name: &str) -> Option<Familiar> {
+    Some(match name {
+        "ln" => renamed("log", "`log` is the natural logarithm"),
+        "log2" => elsewhere("`log` is the natural logarithm, that to the base 2 is `log(x) / log(2)`"),
+        "log10" | "lg" => {
+            elsewhere("`log` is the natural logarithm, that to the base 10 is `log(x) / log(10)`")
+        }
+        "exp2" => elsewhere("2 to a power is `pow(2, x)`"),
+        "sqr" | "square" => elsewhere("a square is written `x * x`"),
+        "cbrt" => elsewhere("a cube root is `pow(x, 1 / 3)`"),
+        "power" => rewritten("pow", "`pow(a, b)` is a to the power b"),
+        "hypot" => elsewhere("write `sqrt(a * a + b * b)`; the length of a triple is `length(v)`"),
+        "sign" | "sgn" | "signum" => elsewhere("choose by what it is: `if x < 0 then -1 else 1`"),
+        "sinh" => elsewhere("write `(exp(x) - exp(-x)) / 2`"),
+        "cosh" => elsewhere("write `(exp(x) + exp(-x)) / 2`"),
+        "tanh" => elsewhere("write `1 - 2 / (exp(2 * x) + 1)`"),
+        "asinh" | "arsinh" => elsewhere("write `log(x + sqrt(x * x + 1))`"),
+        "acosh" | "arcosh" => elsewhere("write `log(x + sqrt(x * x - 1))`"),
+        "atanh" | "artanh" => elsewhere("write `log((1 + x) / (1 - x)) / 2`"),
+        "atan" | "arctan" => elsewhere("the angle of a slope is `atan2(y, x)`"),
+        "radians" | "to_radians" | "deg2rad" | "degtorad" => {
+            elsewhere("an angle has its unit: `90deg`, and is wanted as such by `sin` and `turn`")
+        }
+        "degrees" | "to_degrees" | "rad2deg" | "radtodeg" => {
+            elsewhere("an angle has its unit: `1.5rad`; how many degrees it is, is `angle / 1deg`")
+        }
+        "trunc" | "truncate" | "int" | "integer" => {
+            elsewhere("`floor(x)` is the next whole number below, `ceil(x)` above, `round(x)` the nearest")
+        }
+        "fract" | "frac" => elsewhere("what is behind the point is `mod(x, 1)`"),
+        "fmod" | "modulo" | "rem" => rewritten("mod", "`mod(a, b)` is the remainder, with the sign of b"),
+        "step" => elsewhere("choose by what it is: `if x < edge then 0 else 1`"),
+        "smoothstep" => elsewhere("with a `t` from 0 to 1 write `t * t * (3 - 2 * t)`"),
+        "saturate" => elsewhere("write `clamp(x, 0, 1)`"),
+        "lerp" | "interpolate" => rewritten("mix", "`mix(a, b, t)` lies between two values"),
+        "norm" | "magnitude" | "vlength" => rewritten("length", "`length(v)` is how long a triple is"),
+        "distance" | "dist" => elsewhere("how far two points are apart is `length(a - b)`"),
+        "normalise" | "normalized" | "normalised" | "unit_vector" | "vnormalize" => {
+            rewritten("normalize", "`normalize(v)` has the same direction, and the length 1")
+        }
+        "vdot" | "dot_product" => rewritten("dot", "`dot(a, b)` is the scalar product"),
+        "vcross" | "cross_product" => rewritten("cross", "`cross(a, b)` is the vector product"),
+        "len" | "size" | "count" => rewritten("length", "`length(list)` is how many items it has"),
+        "random" | "rnd" => elsewhere(
+            "`rand(i, j)` looks random, and is always the same for the same numbers, such as those of a loop",
+        ),
+        "rotate" => rewritten("turn", "`turn` turns about one axis: `turn(y: 30deg)`"),
+        "translate" => rewritten("move", "`move` moves: `move(0, 1m, 0)`"),
+        "vec3" | "vec" | "vector" | "Vector" | "point" | "float3" | "xyz" => {
+            elsewhere("three values stand in parentheses: `(0, 1, 0)m`")
+        }
+        "rgba" | "srgba" | "rgbf" | "rgbt" => elsewhere(
+            "a colour has no transparency: `srgb(r, g, b)`, each from 0 to 1; what one sees through is a `dielectric`",
+        ),
+        "hsl" | "hsla" => elsewhere(
+            "`hsv(angle, s, v)` is another way to say a colour, with a value in place of a lightness",
+        ),
         _ => return None,
     })
 }

@@ -1,0 +1,66 @@
+//! What names of elsewhere are here, beyond those of kinds, fields and functions.
+
+use crate::check::functions::by_name;
+use crate::diagnostic::Diagnostic;
+use crate::schema;
+use crate::syntax::ast::Name;
+use crate::units;
+
+/// Offers another word in place of a name.
+pub(super) fn offer(diagnostic: Diagnostic, name: &Name, word: &str) -> Diagnostic {
+    diagnostic.offer(format!("replace it with `{word}`"), vec![(name.span, word.to_string())])
+}
+
+/// A unit whose letter means something else in this case: of `M` a million, and of `k` a thousand.
+pub(super) fn unit_in_other_case(what: &str, name: &str) -> Option<(&'static str, &'static str)> {
+    match (what, name) {
+        ("unit", "M") => Some(("metres", "m")),
+        ("unit", "k") => Some(("kelvins", "K")),
+        _ => None,
+    }
+}
+
+/// The word that a name certainly means.
+pub(super) fn written_as(what: &str, name: &str) -> Option<&'static str> {
+    match (what, name) {
+        ("name", "yes" | "on" | "True" | "TRUE") => Some("true"),
+        ("name", "no" | "off" | "False" | "FALSE") => Some("false"),
+        ("unit", "w") => Some("W"),
+        ("unit", _) => units::spelt_out(name),
+        _ => None,
+    }
+}
+
+/// How one says here what a name means elsewhere, or at another place.
+pub(super) fn said_otherwise(what: &str, name: &str) -> Option<String> {
+    let kind = || schema::kind(name).is_some();
+    Some(match (what, name) {
+        ("name" | "function", _) if kind() => {
+            format!("`{name}` is a kind, and makes something with its fields in braces: `{name} {{ … }}`")
+        }
+        ("name", "pi" | "PI" | "Pi") => "half a turn is `180deg`, and as a number `180deg / 1rad`".into(),
+        ("name", "f") => {
+            "an f-number is the number alone: `stop: 2.8`; any other value is declared: `let f = …`".into()
+        }
+        ("name", _) => return undeclarable(name),
+        ("kind", "new") => "leave it out: a thing begins with its kind: `sphere { … }`".into(),
+        ("unit", "spp" | "sample" | "samples") => "a number of samples has no unit".into(),
+        ("kind", "while") => "`for` repeats: `for i in range(7) { … }`".into(),
+        ("unit", "px" | "pixel" | "pixels") => "a number of pixels has no unit".into(),
+        _ => return None,
+    })
+}
+
+/// How a name is used that means something already, and so cannot be declared.
+fn undeclarable(name: &str) -> Option<String> {
+    if let Some(function) = by_name(name) {
+        return Some(format!("`{name}` is a function: `{}`", function.signature()));
+    }
+    units::is_unit(name).then(|| format!("`{name}` is a unit, and touches a number: `1{name}`"))
+}
+
+/// Whether what stands behind a number is rather the rest of a size: `320x240`.
+pub(super) fn is_side(unit: &str) -> bool {
+    unit.strip_prefix(['x', '×'])
+        .is_some_and(|rest| !rest.is_empty() && rest.bytes().all(|b| b.is_ascii_digit()))
+}
