@@ -13,7 +13,7 @@ pub(super) use guess::*;
 pub(super) use query::*;
 pub(super) use types::*;
 pub(super) use unknown::*;
-use words::{is_side, offer, said_otherwise, unit_in_other_case, written_as};
+use words::{is_side, offer, said_otherwise, unit_in_other_case, unit_of_elsewhere, written_as};
 
 use super::block::{path_span, path_text};
 use super::types::{Kind, Making, Type, describe_wanted, list};
@@ -33,8 +33,9 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
         Diagnostic::new(code, format!("unknown {what} `{}`", name.text), name.span).at("not known here");
     // A unit of two letters is near to all others; only its first letter tells what was meant.
     let start = name.text.chars().next();
-    let same_start =
-        |guess: &str| what != "unit" || guess.chars().next() == start || guess == name.text.to_lowercase();
+    let same_start = |guess: &str| {
+        what != "unit" || guess.chars().next() == start || guess.eq_ignore_ascii_case(&name.text)
+    };
     if let Some(word) = written_as(what, &name.text) {
         return diagnostic.help(format!("write `{word}`")).fix(name.span, word);
     }
@@ -42,6 +43,11 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
         return offer(diagnostic.help(format!("{of} are written `{unit}`")), name, unit);
     }
     if let Some(help) = said_otherwise(what, &name.text) {
+        return diagnostic.help(help);
+    }
+    if what == "unit"
+        && let Some(help) = unit_of_elsewhere(&name.text)
+    {
         return diagnostic.help(help);
     }
     if what == "function"
@@ -85,9 +91,6 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
         Some(guess) => guess.ask(diagnostic, name.span, ""),
         None if what == "unit" && is_side(&name.text) => {
             diagnostic.help("width and height are a pair: `(320, 240)`")
-        }
-        None if what == "unit" && name.text.starts_with(['µ', 'μ']) => {
-            diagnostic.help("micrometres are written `um`").fix(name.span, "um")
         }
         None if what == "unit" => diagnostic.help(format!("the units are {}", quoted(candidates))),
         None if what == "kind" => diagnostic.help(format!("the kinds known here are {}", quoted(candidates))),

@@ -29,7 +29,7 @@ const fn elsewhere(hint: &'static str) -> Familiar {
 pub fn field(kind: &str, category: Category, name: &str) -> Option<Familiar> {
     match category {
         Category::Shape | Category::Group => {
-            drawn(name).or_else(|| placed(name)).or_else(|| shape(kind, name))
+            drawn(name).or_else(|| placed(kind, name)).or_else(|| shape(kind, name))
         }
         Category::Material => material(kind, name),
         Category::Light => drawn(name).or_else(|| light(kind, name)),
@@ -46,11 +46,21 @@ fn drawn(name: &str) -> Option<Familiar> {
     }
 }
 
-fn placed(name: &str) -> Option<Familiar> {
+fn placed(kind: &str, name: &str) -> Option<Familiar> {
+    const MIDDLE: [&str; 2] = ["center", "centre"];
     Some(match name {
-        "position" | "pos" | "location" | "center" | "centre" | "origin" => {
-            renamed("at", "`at` says where it stands")
-        }
+        "position" | "pos" | "location" | "origin" | "center" | "centre" => match kind {
+            "cylinder" | "cone" | "paraboloid" => rewritten(
+                "at",
+                "it stands on `at`, so that its middle is half of its `height` above that: `at: (0, 1, 0)m`",
+            ),
+            // Their origin is the middle, or as good as that.
+            "sphere" | "disk" | "box" | "hyperboloid" | "plane" => renamed("at", "`at` says where it stands"),
+            _ if MIDDLE.contains(&name) => {
+                rewritten("at", "`at` says where its origin stands, which need not be its middle")
+            }
+            _ => renamed("at", "`at` says where its origin stands"),
+        },
         "translate" | "translation" | "rotate" | "rotation" | "scale" | "transform" | "orientation"
         | "matrix" => rewritten(
             "place",
@@ -110,9 +120,10 @@ fn shape(kind: &str, name: &str) -> Option<Familiar> {
 
 fn material(kind: &str, name: &str) -> Option<Familiar> {
     Some(match (kind, name) {
-        ("dielectric", "index" | "eta" | "refractive_index" | "refraction" | "index_of_refraction") => {
+        ("dielectric", "index" | "eta" | "refractive_index" | "index_of_refraction") => {
             renamed("ior", "`ior` is the refractive index")
         }
+        ("dielectric", "refraction") => rewritten("ior", "`ior` is the refractive index"),
         ("plastic", "index" | "eta" | "refractive_index" | "index_of_refraction") => {
             renamed("ior", "`ior` is the refractive index of the coat")
         }
@@ -123,10 +134,11 @@ fn material(kind: &str, name: &str) -> Option<Familiar> {
         ("emitter", "intensity" | "strength" | "brightness" | "emission" | "energy") => {
             rewritten("radiance", "say how much it gives with `power: 5W` in all, or with `radiance: 2W/m2`")
         }
-        (
-            "diffuse" | "mirror" | "metal" | "plastic",
-            "colour" | "albedo" | "reflectance" | "base_color" | "kd",
-        ) => renamed("color", "`color` is the reflectance"),
+        ("diffuse" | "mirror" | "metal" | "plastic", "colour" | "albedo" | "reflectance" | "base_color")
+        | ("diffuse" | "plastic", "kd") => renamed("color", "`color` is the reflectance"),
+        ("diffuse" | "mirror" | "metal" | "plastic" | "emitter", "texture" | "map" | "pattern") => {
+            rewritten("color", "a texture is given as the `color`: `color: checker(red, white, 10cm)`")
+        }
         (
             "metal" | "plastic" | "dielectric",
             "glossiness" | "shininess" | "smoothness" | "fuzz" | "alpha",
@@ -158,6 +170,19 @@ fn light(kind: &str, name: &str) -> Option<Familiar> {
             renamed("at", "`at` says where it stands")
         }
         ("light", _) if much => rewritten("power", "`power` is what it radiates in all: `power: 60W`"),
+        // What is said of these takes other fields along, or another value.
+        ("light", "target" | "point_at" | "look_at" | "look" | "direction" | "dir") => {
+            elsewhere("`aim` is what a spot shines at: `aim: (0, 1, 0)m, cone: 40deg`")
+        }
+        ("light", "angle" | "spot_size" | "cutoff") => elsewhere(
+            "`cone` is the full angle of a spot, beside what it shines at: `aim: (0, 1, 0)m, cone: 40deg`",
+        ),
+        ("light", "blend" | "penumbra") => {
+            elsewhere("`soft` is the share of a spot's `cone` over which its light fades")
+        }
+        ("sky", "rotation" | "rotate" | "angle") => {
+            elsewhere("`turn` turns the `image` of a sky about the y axis: `turn: 90deg`")
+        }
         ("light", "size") => rewritten("radius", "`radius` makes it a glowing ball, with soft shadows"),
         ("sun", "direction" | "dir" | "to" | "position") => {
             rewritten("from", "`from` points towards the sun, against the way its light goes")
@@ -181,14 +206,24 @@ fn light(kind: &str, name: &str) -> Option<Familiar> {
 
 fn block(kind: &str, name: &str) -> Option<Familiar> {
     Some(match (kind, name) {
-        ("camera", "position" | "pos" | "location" | "eye" | "origin" | "center" | "at") => {
+        ("camera", "position" | "pos" | "location" | "eye" | "origin") => {
             renamed("from", "`from` says where the camera stands")
+        }
+        ("camera", "center" | "centre" | "at") => {
+            rewritten("from", "`from` says where the camera stands, and `look` what it looks at")
         }
         ("camera", "look_at" | "lookat" | "lookAt" | "target" | "to" | "aim") => {
             renamed("look", "`look` says what is in the middle of the picture")
         }
-        ("camera", "angle" | "field_of_view" | "fovx" | "hfov") => {
+        ("camera", "fovx" | "fov_x" | "xfov" | "hfov" | "horizontal_fov") => {
             renamed("fov", "`fov` is the view across the width")
+        }
+        ("camera", "vfov" | "fovy" | "fov_y" | "yfov" | "vertical_fov") => rewritten(
+            "fov",
+            "`fov` is the angle across the width: of a picture that is not square another one than up its height",
+        ),
+        ("camera", "angle" | "field_of_view" | "view_angle") => {
+            rewritten("fov", "`fov` is the angle across the width")
         }
         (
             "camera",
@@ -199,7 +234,10 @@ fn block(kind: &str, name: &str) -> Option<Familiar> {
         }
         ("lens", "focal_length") => renamed("focal", "`focal` is the focal length"),
         ("lens", "f_stop" | "fstop" | "f_number") => renamed("stop", "`stop` is the f-number"),
-        ("lens", "focus_distance" | "focal_distance") => renamed("focus", "`focus` is where it is sharp"),
+        ("lens", "focus_distance") => renamed("focus", "`focus` is where it is sharp"),
+        ("lens", "focal_distance") => {
+            rewritten("focus", "`focus` is where it is sharp, `focal` the focal length")
+        }
         ("render", "resolution" | "res" | "dimensions") => {
             renamed("size", "`size` is width and height in pixels")
         }
@@ -210,10 +248,13 @@ fn block(kind: &str, name: &str) -> Option<Familiar> {
             renamed("samples", "`samples` are those of a pixel")
         }
         ("render", "depth" | "max_depth" | "maxdepth" | "max_bounces" | "recursion") => {
-            renamed("bounces", "`bounces` limits how often light is scattered")
+            rewritten("bounces", "`bounces` limits how often light is scattered: 1 is direct light alone")
         }
         ("render", "output" | "file" | "filename") => {
             elsewhere("the command says where to: `rtc build scene.rt -o picture.png`")
+        }
+        ("render", "denoise" | "denoiser" | "denoising") => {
+            elsewhere("the command does that: `rtc build scene.rt --denoise`")
         }
         ("render", "threads") => elsewhere("the command says how many: `rtc build scene.rt -j 4`"),
         ("render", "exposure") => elsewhere("`exposure` belongs to the camera"),
@@ -222,6 +263,16 @@ fn block(kind: &str, name: &str) -> Option<Familiar> {
         }
         _ => return None,
     })
+}
+
+/// What a bare number may mean where a field wants a quantity.
+pub fn number(field: &str) -> Option<&'static str> {
+    match field {
+        "aperture" => Some(
+            "an f-number is the `stop` of a lens, `focal: 50mm, stop: 2.8`; an `aperture` is a diameter, such as `2.8mm`",
+        ),
+        _ => None,
+    }
 }
 
 /// What a kind that there is not is called here.
@@ -247,9 +298,10 @@ pub fn kind(name: &str) -> Option<Familiar> {
         "background" | "environment" | "env" | "sky_sphere" | "hdri" => {
             rewritten("sky", "what is behind everything is the `sky`: `sky { color: #203040 }`")
         }
-        "glass" | "water" => renamed("dielectric", "glass and water are a `dielectric`"),
+        "glass" => renamed("dielectric", "glass is a `dielectric`"),
+        "water" => rewritten("dielectric", "water is a `dielectric`: `dielectric { ior: 1.33 }`"),
         "lambertian" | "lambert" | "matte" => renamed("diffuse", "a matt surface is `diffuse`"),
-        "specular" => renamed("mirror", "a perfect mirror is a `mirror`"),
+        "specular" => rewritten("mirror", "a perfect mirror is a `mirror`"),
         "conductor" => renamed("metal", "a conductor is a `metal`"),
         "emissive" | "emission" | "area" | "diffuse_light" => {
             rewritten("emitter", "what glows is an `emitter`")
@@ -267,10 +319,10 @@ pub fn kind(name: &str) -> Option<Familiar> {
         "torus" | "text" | "blob" | "prism" | "lathe" => {
             rewritten("mesh", "there is no such shape; as triangles it is a `mesh { file: \"shape.obj\" }`")
         }
-        "difference" | "intersection" | "merge" | "csg" => {
+        "difference" | "intersection" | "csg" => {
             elsewhere("shapes are not cut out of each other; a `mesh` from a file may have any shape")
         }
-        "union" | "object" | "node" | "scene" | "world" => {
+        "union" | "merge" | "object" | "node" | "scene" | "world" => {
             rewritten("group", "things are put together in a `group`")
         }
         _ => return None,

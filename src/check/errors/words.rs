@@ -1,6 +1,7 @@
 //! What names of elsewhere are here, beyond those of kinds, fields and functions.
 
 use crate::check::functions::by_name;
+use crate::check::types::list;
 use crate::diagnostic::Diagnostic;
 use crate::schema;
 use crate::syntax::ast::Name;
@@ -18,6 +19,21 @@ pub(super) fn unit_in_other_case(what: &str, name: &str) -> Option<(&'static str
         ("unit", "k") => Some(("kelvins", "K")),
         _ => None,
     }
+}
+
+/// What there is in place of a unit that is known elsewhere, and near to one here by its letters alone.
+pub(super) fn unit_of_elsewhere(name: &str) -> Option<String> {
+    let measured = units::elsewhere(name)?;
+    let known = units::UNITS.iter().filter(|(_, unit)| measured.is_none_or(|dim| unit.dim == dim));
+    let known = list(known.map(|(unit, _)| format!("`{unit}`")).collect(), "and");
+    Some(match measured {
+        Some(dim) if dim == units::TEMPERATURE => format!("the unit of {dim} is {known}"),
+        Some(dim) => format!("the units of {dim} are {known}"),
+        None if ["lm", "cd", "lx"].iter().any(|unit| name.ends_with(unit)) => {
+            "how much a light gives is said in watts: `60W`".into()
+        }
+        None => format!("the units are {known}"),
+    })
 }
 
 /// The word that a name certainly means.
@@ -42,13 +58,22 @@ pub(super) fn said_otherwise(what: &str, name: &str) -> Option<String> {
         ("name", "f") => {
             "an f-number is the number alone: `stop: 2.8`; any other value is declared: `let f = …`".into()
         }
+        ("name", _) if is_nothing(name) => "nothing is no value: what is left out has its default".into(),
+        ("name", "auto") => "only `exposure` knows `auto`; what is left out has its default".into(),
         ("name", _) => return undeclarable(name),
         ("kind", "new") => "leave it out: a thing begins with its kind: `sphere { … }`".into(),
         ("unit", "spp" | "sample" | "samples") => "a number of samples has no unit".into(),
         ("kind", "while") => "`for` repeats: `for i in range(7) { … }`".into(),
-        ("unit", "px" | "pixel" | "pixels") => "a number of pixels has no unit".into(),
+        ("unit", "px" | "pixel" | "pixels") => {
+            "a number of pixels has no unit; a length is one of the scene, such as `10cm`".into()
+        }
         _ => return None,
     })
+}
+
+/// Whether a name says elsewhere that there is no value.
+pub(super) fn is_nothing(name: &str) -> bool {
+    ["null", "nil", "None", "none", "undefined"].contains(&name)
 }
 
 /// How a name is used that means something already, and so cannot be declared.
