@@ -13,6 +13,7 @@ pub(super) use guess::*;
 pub(super) use query::*;
 pub(super) use types::*;
 pub(super) use unknown::*;
+pub(super) use words::name_as_unit;
 use words::{is_side, offer, said_otherwise, unit_in_other_case, unit_of_elsewhere, written_as};
 
 use super::block::{path_span, path_text};
@@ -39,8 +40,8 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
     if let Some(word) = written_as(what, &name.text) {
         return diagnostic.help(format!("write `{word}`")).fix(name.span, word);
     }
-    if let Some((of, unit)) = unit_in_other_case(what, &name.text) {
-        return offer(diagnostic.help(format!("{of} are written `{unit}`")), name, unit);
+    if let Some((help, unit)) = unit_in_other_case(what, &name.text) {
+        return offer(diagnostic.help(help), name, unit);
     }
     if let Some(help) = said_otherwise(what, &name.text) {
         return diagnostic.help(help);

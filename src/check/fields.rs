@@ -243,6 +243,24 @@ impl Checker<'_> {
     }
 }
 
+/// The field that may stand for those of which exactly one must be given and none is, such that it breaks no other rule.
+pub(super) fn one_of_several(kind: KindId, has: impl Fn(&&str) -> bool) -> Option<usize> {
+    let rules = kind.get().rules;
+    let names = rules.iter().find_map(|rule| match rule {
+        Rule::ExactlyOne(names) if !names.iter().any(&has) => Some(names),
+        _ => None,
+    })?;
+    let breaks = |name: &str, rule: &Rule| match rule {
+        Rule::Excludes(one, others) => {
+            *one == name && others.iter().any(&has) || others.contains(&name) && has(one)
+        }
+        Rule::Together(names) => names.contains(&name),
+        _ => false,
+    };
+    let name = names.iter().find(|name| !rules.iter().any(|rule| breaks(name, rule)))?;
+    kind.field_index(name)
+}
+
 /// What a rule misses beside the fields that are given. What lacks one field may break several rules: the one
 /// that says most is said.
 fn broken_rule(kind: KindId, given: FieldSet, place: Span) -> Option<Diagnostic> {

@@ -1,6 +1,7 @@
 //! Things: their kind, and their fields.
 
 use super::block::{path_span, path_text};
+use super::fields::one_of_several;
 use super::notes::{Meaning, word_of};
 use super::program::{Around, Base, Expr, ExprKind, FieldPlace, Make, Written};
 use super::scope::{Item, Place, built_in};
@@ -325,6 +326,15 @@ impl Checker<'_> {
             .collect();
         if lost.is_some() || missing.len() == 1 {
             make.fields.extend(missing.into_iter().map(|field| (field, Expr::invalid(place))));
+        }
+        // So does one of several of which one must be given.
+        let has = |name: &&str| {
+            let index = kind.field_index(name);
+            let given = |index| make.fields.iter().any(|(given, _)| *given == FieldPlace::Index(index));
+            index.is_some_and(|index| making.given.has(index) || given(index))
+        };
+        if let Some(index) = one_of_several(kind, has) {
+            make.fields.push((FieldPlace::Index(index), Expr::invalid(place)));
         }
     }
 

@@ -232,6 +232,13 @@ fn block(kind: &str, name: &str) -> Option<Familiar> {
         ("camera", "resolution" | "size") => {
             elsewhere("the size belongs to the picture: `render { size: (1280, 720) }`")
         }
+        ("lens", "f") => {
+            elsewhere("`focal` is the focal length, `stop` the f-number: `focal: 50mm, stop: 2.8`")
+        }
+        ("lens", "radius" | "lens_radius") => {
+            rewritten("aperture", "`aperture` is the diameter of the opening, twice its radius")
+        }
+        ("lens", "diameter") => renamed("aperture", "`aperture` is the diameter of the opening"),
         ("lens", "focal_length") => renamed("focal", "`focal` is the focal length"),
         ("lens", "f_stop" | "fstop" | "f_number") => renamed("stop", "`stop` is the f-number"),
         ("lens", "focus_distance") => renamed("focus", "`focus` is where it is sharp"),

@@ -2,7 +2,7 @@
 
 use crate::check::functions::by_name;
 use crate::check::types::list;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Code, Diagnostic};
 use crate::schema;
 use crate::syntax::ast::Name;
 use crate::units;
@@ -12,11 +12,20 @@ pub(super) fn offer(diagnostic: Diagnostic, name: &Name, word: &str) -> Diagnost
     diagnostic.offer(format!("replace it with `{word}`"), vec![(name.span, word.to_string())])
 }
 
-/// A unit whose letter means something else in this case: of `M` a million, and of `k` a thousand.
+/// `2a`, where `a` is a value.
+pub(in crate::check) fn name_as_unit(name: &Name) -> Diagnostic {
+    let text = &name.text;
+    Diagnostic::new(Code::E0101, format!("unknown unit `{text}`"), name.span)
+        .at("a name touches the number")
+        .help(format!("a product has its sign: `2 * {text}`"))
+        .offer("write a product", vec![(name.span.before(), " * ".into())])
+}
+
+/// A unit whose letter means something else in this case, what is said of that: `M` is a million, and `k` a thousand.
 pub(super) fn unit_in_other_case(what: &str, name: &str) -> Option<(&'static str, &'static str)> {
     match (what, name) {
-        ("unit", "M") => Some(("metres", "m")),
-        ("unit", "k") => Some(("kelvins", "K")),
+        ("unit", "M") => Some(("metres are written `m`, and millions are written out: `2_000_000`", "m")),
+        ("unit", "k") => Some(("kelvins are written `K`, and thousands are written out: `2000`", "K")),
         _ => None,
     }
 }
