@@ -243,7 +243,7 @@ impl Checker<'_> {
     }
 }
 
-/// The field that may stand for those of which exactly one must be given and none is, such that it breaks no other rule.
+/// The field that may stand for those of which one must be given and none is, such that it breaks no other rule.
 pub(super) fn one_of_several(kind: KindId, has: impl Fn(&&str) -> bool) -> Option<usize> {
     let rules = kind.get().rules;
     let names = rules.iter().find_map(|rule| match rule {

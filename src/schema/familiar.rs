@@ -276,7 +276,8 @@ fn block(kind: &str, name: &str) -> Option<Familiar> {
 pub fn number(field: &str) -> Option<&'static str> {
     match field {
         "aperture" => Some(
-            "an f-number is the `stop` of a lens, `focal: 50mm, stop: 2.8`; an `aperture` is a diameter, such as `2.8mm`",
+            "an f-number is the `stop` of a lens, `focal: 50mm, stop: 2.8`; an `aperture` is a diameter, \
+             such as `2.8mm`",
         ),
         _ => None,
     }
