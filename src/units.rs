@@ -140,23 +140,64 @@ pub const UNITS: &[(&str, Unit)] = &[
 
 /// The words of units that are written short.
 const SPELT_OUT: &[(&str, &[&str])] = &[
+    ("um", &["µm", "μm", "micron", "microns"]),
     ("m", &["meter", "meters", "metre", "metres"]),
     ("cm", &["centimeter", "centimeters", "centimetre", "centimetres"]),
     ("mm", &["millimeter", "millimeters", "millimetre", "millimetres"]),
     ("km", &["kilometer", "kilometers", "kilometre", "kilometres"]),
     ("in", &["inch", "inches"]),
     ("ft", &["foot", "feet"]),
-    ("deg", &["degree", "degrees"]),
+    ("deg", &["degree", "degrees", "º"]),
     ("rad", &["radian", "radians"]),
     ("turn", &["turns"]),
     ("W", &["watt", "watts", "Watt", "Watts"]),
-    ("K", &["kelvin", "kelvins", "Kelvin"]),
+    ("K", &["kelvin", "kelvins", "Kelvin", "ºK"]),
     ("%", &["percent"]),
 ];
 
 /// The unit that a word means: `metres` is `m`.
 pub fn spelt_out(word: &str) -> Option<&'static str> {
     SPELT_OUT.iter().find(|(_, words)| words.contains(&word)).map(|(unit, _)| *unit)
+}
+
+/// Units that stand behind the prefixes of SI, and what they measure where that is measured here.
+const PREFIXED: &[(&str, Option<Dim>)] = &[
+    ("m", Some(LENGTH)),
+    ("W", Some(POWER)),
+    ("K", Some(TEMPERATURE)),
+    ("rad", Some(ANGLE)),
+    ("lm", None),
+    ("cd", None),
+    ("lx", None),
+    ("g", None),
+    ("s", None),
+    ("l", None),
+    ("A", None),
+    ("V", None),
+    ("J", None),
+    ("N", None),
+    ("Nm", None),
+    ("Wh", None),
+    ("Hz", None),
+    ("Pa", None),
+    ("sr", None),
+    ("mol", None),
+];
+
+/// The prefixes of SI, with none.
+const PREFIXES: &[&str] =
+    &["", "da", "h", "k", "M", "G", "T", "P", "d", "c", "m", "u", "µ", "μ", "n", "p", "f"];
+
+/// Of a unit of elsewhere, what it measures where that is measured here.
+pub fn elsewhere(name: &str) -> Option<Option<Dim>> {
+    match name {
+        "yd" | "yard" | "yards" | "mi" | "mile" | "miles" => Some(Some(LENGTH)),
+        "gon" | "arcmin" | "arcsec" => Some(Some(ANGLE)),
+        "hp" => Some(Some(POWER)),
+        _ => PREFIXED.iter().find_map(|(unit, dim)| {
+            name.strip_suffix(unit).filter(|prefix| PREFIXES.contains(prefix)).map(|_| *dim)
+        }),
+    }
 }
 
 /// Whether this bare word is a unit's name, which therefore cannot be declared.

@@ -199,6 +199,7 @@ impl<'a> Checker<'a> {
                 self.report_lost(&self.text(value.span).into(), diagnostic);
                 (Expr::invalid(value.span), Type::Invalid)
             }
+            None if keyword == Keyword::Material => self.infer_wanted(material, value),
             None => self.infer(value),
         }
     }

@@ -6,15 +6,17 @@ mod guess;
 mod query;
 mod types;
 mod unknown;
+mod words;
 
 pub(super) use declared::*;
 pub(super) use guess::*;
 pub(super) use query::*;
 pub(super) use types::*;
 pub(super) use unknown::*;
+pub(super) use words::name_as_unit;
+use words::{is_side, offer, said_otherwise, unit_in_other_case, unit_of_elsewhere, written_as};
 
 use super::block::{path_span, path_text};
-use super::functions::by_name;
 use super::types::{Kind, Making, Type, describe_wanted, list};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::schema::{self, Category, Field, FieldType, KindId, Preset, familiar};
@@ -32,19 +34,31 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
         Diagnostic::new(code, format!("unknown {what} `{}`", name.text), name.span).at("not known here");
     // A unit of two letters is near to all others; only its first letter tells what was meant.
     let start = name.text.chars().next();
-    let same_start =
-        |guess: &str| what != "unit" || guess.chars().next() == start || guess == name.text.to_lowercase();
+    let same_start = |guess: &str| {
+        what != "unit" || guess.chars().next() == start || guess.eq_ignore_ascii_case(&name.text)
+    };
     if let Some(word) = written_as(what, &name.text) {
         return diagnostic.help(format!("write `{word}`")).fix(name.span, word);
     }
-    if let Some((of, unit)) = unit_in_other_case(what, &name.text) {
-        return offer(diagnostic.help(format!("{of} are written `{unit}`")), name, unit);
+    if let Some((help, unit)) = unit_in_other_case(what, &name.text) {
+        return offer(diagnostic.help(help), name, unit);
     }
     if let Some(help) = said_otherwise(what, &name.text) {
-        let here = called_here(what, &name.text);
-        return here
-            .into_iter()
-            .fold(diagnostic.help(help), |diagnostic, here| offer(diagnostic, name, here));
+        return diagnostic.help(help);
+    }
+    if what == "unit"
+        && let Some(help) = unit_of_elsewhere(&name.text)
+    {
+        return diagnostic.help(help);
+    }
+    if what == "function"
+        && let Some(here) = familiar::function(&name.text)
+    {
+        let diagnostic = with_familiar(diagnostic, here, name.span, candidates);
+        return match here.name {
+            Some(function) if !here.same_value => offer(diagnostic, name, function),
+            _ => diagnostic,
+        };
     }
     // What only stands inside another is not meant where anything may stand.
     let inner = |kind: &&str| what == "kind" && schema::is_part(kind);
@@ -52,6 +66,8 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
     let guess = closest(&name.text, &free).filter(|guess| same_start(guess.name));
     let guess = guess.map(|mut guess| {
         guess.near.retain(|near| same_start(near));
+        // What is near to a function or a unit is mostly one of elsewhere, such as `sign` and `Mm`.
+        guess.certain &= !["function", "unit"].contains(&what) || name.text.eq_ignore_ascii_case(guess.name);
         guess
     });
     // An exact word of elsewhere says more than what merely lies near.
@@ -77,96 +93,12 @@ pub(super) fn unknown(code: Code, what: &str, name: &Name, candidates: &[&str]) 
         None if what == "unit" && is_side(&name.text) => {
             diagnostic.help("width and height are a pair: `(320, 240)`")
         }
-        None if what == "unit" && name.text.starts_with(['µ', 'μ']) => {
-            diagnostic.help("micrometres are written `um`").fix(name.span, "um")
-        }
         None if what == "unit" => diagnostic.help(format!("the units are {}", quoted(candidates))),
         None if what == "kind" => diagnostic.help(format!("the kinds known here are {}", quoted(candidates))),
         None if what == "function" => diagnostic.help(format!("the functions are {}", quoted(candidates))),
         None if what == "name" => diagnostic.help(format!("declare it: `let {} = …`", name.text)),
         None => diagnostic,
     }
-}
-
-/// Offers another word in place of a name.
-fn offer(diagnostic: Diagnostic, name: &Name, word: &str) -> Diagnostic {
-    diagnostic.offer(format!("replace it with `{word}`"), vec![(name.span, word.to_string())])
-}
-
-/// A unit whose letter means something else in this case: of `M` a million, and of `k` a thousand.
-fn unit_in_other_case(what: &str, name: &str) -> Option<(&'static str, &'static str)> {
-    match (what, name) {
-        ("unit", "M") => Some(("metres", "m")),
-        ("unit", "k") => Some(("kelvins", "K")),
-        _ => None,
-    }
-}
-
-/// The function here that does what one of another name does elsewhere.
-fn called_here(what: &str, name: &str) -> Option<&'static str> {
-    match (what, name) {
-        ("function", "rotate") => Some("turn"),
-        ("function", "translate") => Some("move"),
-        ("function", "len" | "size" | "count") => Some("length"),
-        ("function", "lerp") => Some("mix"),
-        _ => None,
-    }
-}
-
-/// The word that a name certainly means.
-fn written_as(what: &str, name: &str) -> Option<&'static str> {
-    match (what, name) {
-        ("name", "yes" | "on" | "True" | "TRUE") => Some("true"),
-        ("name", "no" | "off" | "False" | "FALSE") => Some("false"),
-        ("unit", "w") => Some("W"),
-        ("unit", _) => units::spelt_out(name),
-        _ => None,
-    }
-}
-
-/// How one says here what a name means elsewhere, or at another place.
-fn said_otherwise(what: &str, name: &str) -> Option<String> {
-    let kind = || schema::kind(name).is_some();
-    Some(match (what, name) {
-        ("name" | "function", _) if kind() => {
-            format!("`{name}` is a kind, and makes something with its fields in braces: `{name} {{ … }}`")
-        }
-        ("name", "pi" | "PI" | "Pi") => "half a turn is `180deg`, and as a number `180deg / 1rad`".into(),
-        ("name", "f") => {
-            "an f-number is the number alone: `stop: 2.8`; any other value is declared: `let f = …`".into()
-        }
-        ("name", _) => return undeclarable(name),
-        ("function", "rotate") => "`turn` turns about one axis: `turn(y: 30deg)`".into(),
-        ("function", "translate") => "`move` moves: `move(0, 1m, 0)`".into(),
-        ("function", "len" | "size" | "count") => "`length(list)` is how many items it has".into(),
-        ("function", "vec3" | "vec" | "vector" | "Vector" | "point" | "float3" | "xyz") => {
-            "three values stand in parentheses: `(0, 1, 0)m`".into()
-        }
-        ("function", "hsl") => {
-            "`hsv(angle, s, v)` is another way to say a colour, with a value in place of a lightness".into()
-        }
-        ("function", "atan") => "the angle of a slope is `atan2(y, x)`".into(),
-        ("function", "lerp") => "`mix(a, b, t)` lies between two values".into(),
-        ("kind", "new") => "leave it out: a thing begins with its kind: `sphere { … }`".into(),
-        ("unit", "spp" | "sample" | "samples") => "a number of samples has no unit".into(),
-        ("kind", "while") => "`for` repeats: `for i in range(7) { … }`".into(),
-        ("unit", "px" | "pixel" | "pixels") => "a number of pixels has no unit".into(),
-        _ => return None,
-    })
-}
-
-/// How a name is used that means something already, and so cannot be declared.
-fn undeclarable(name: &str) -> Option<String> {
-    if let Some(function) = by_name(name) {
-        return Some(format!("`{name}` is a function: `{}`", function.signature()));
-    }
-    units::is_unit(name).then(|| format!("`{name}` is a unit, and touches a number: `1{name}`"))
-}
-
-/// Whether what stands behind a number is rather the rest of a size: `320x240`.
-fn is_side(unit: &str) -> bool {
-    unit.strip_prefix(['x', '×'])
-        .is_some_and(|rest| !rest.is_empty() && rest.bytes().all(|b| b.is_ascii_digit()))
 }
 
 pub(super) fn unknown_name(name: &Name, candidates: &[&str]) -> Diagnostic {

@@ -88,6 +88,10 @@ impl Checker<'_> {
         match units::parse_unit(&unit.text) {
             Ok(found) => Some(found),
             Err(part) => {
+                if part == unit.text && self.is_declared(part) {
+                    self.report(errors::name_as_unit(unit));
+                    return None;
+                }
                 let name = Name { text: part.into(), span: unit.span };
                 let known: Vec<&str> = units::UNITS.iter().map(|(name, _)| *name).collect();
                 self.report(errors::unknown(Code::E0101, "unit", &name, &known));

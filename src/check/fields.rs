@@ -2,12 +2,13 @@
 //! hold between these.
 
 use super::notes::Meaning;
-use super::program::{FieldPlace, PartId};
+use super::program::{Expr, FieldPlace, PartId};
+use super::scope::Found;
 use super::types::{FieldSet, Kind, Making, Type};
 use super::unknown::ask;
 use super::{Checker, errors};
 use crate::diagnostic::Diagnostic;
-use crate::schema::{KindId, PLACED, Preset, Rule, familiar};
+use crate::schema::{self, Category, FieldType, KindId, PLACED, Preset, Rule, familiar};
 use crate::span::Span;
 use crate::syntax::ast::{self, Entry, Name};
 
@@ -104,6 +105,52 @@ impl Checker<'_> {
             .map_or("the imported file".into(), |known| known.name.text.to_string())
     }
 
+    /// Whether what stands in a thing of a kind is its material, without the name of the field.
+    pub(super) fn material_of(&mut self, outer: Kind, inner: &ast::Construct) -> bool {
+        let name = &inner.kind.first.text;
+        let category = match (schema::kind(name), self.lookup(name)) {
+            (Some(kind), _) => Some(kind.get().category),
+            (None, Some(Found { ty: Type::Made(making), .. })) => Some(making.kind.category()),
+            _ => None,
+        };
+        category == Some(Category::Material) && self.find_field(outer, "material").is_some()
+    }
+
+    /// Whether the body of a thing has no material by name, and one of which the name was left out.
+    pub(super) fn lacks_name_of_material(&mut self, kind: Kind, entries: &[Entry]) -> bool {
+        let mut bare = 0;
+        for entry in entries {
+            match entry {
+                Entry::Statement(statement) => {
+                    if let ast::StatementKind::Thing { construct, .. } = &statement.kind {
+                        bare += usize::from(self.material_of(kind, construct));
+                    }
+                }
+                entry if gives_material(entry) => return false,
+                _ => {}
+            }
+        }
+        bare == 1
+    }
+
+    /// The field of `kind` that a statement of this kind, or of a prototype of it, inside fills.
+    pub(super) fn part_field(&mut self, kind: KindId, inner: &ast::Path) -> Option<usize> {
+        let found = self.lookup(&inner.first.text).map(|found| found.ty);
+        let inner = match found {
+            Some(Type::Made(Making { kind: Kind::BuiltIn(kind), .. })) => kind.get().name,
+            _ => &inner.first.text,
+        };
+        kind.fields().position(|field| matches!(field.ty, FieldType::Part(part) if part == inner))
+    }
+
+    /// A value where a thing of some category may be wanted, which then is what a misspelt kind is taken for.
+    pub(super) fn infer_wanted(&mut self, wanted: FieldType, value: &ast::Expr) -> (Expr, Type) {
+        if let (FieldType::Made(category), ast::ExprKind::Construct(_)) = (wanted, &value.kind) {
+            self.wanted = Some(category);
+        }
+        self.infer(value)
+    }
+
     /// The names of all fields of a kind.
     pub(super) fn field_names(&self, kind: Kind) -> Vec<String> {
         let placed = PLACED.iter().map(|field| field.name.to_string());
@@ -196,6 +243,24 @@ impl Checker<'_> {
     }
 }
 
+/// The field that may stand for those of which one must be given and none is, such that it breaks no other rule.
+pub(super) fn one_of_several(kind: KindId, has: impl Fn(&&str) -> bool) -> Option<usize> {
+    let rules = kind.get().rules;
+    let names = rules.iter().find_map(|rule| match rule {
+        Rule::ExactlyOne(names) if !names.iter().any(&has) => Some(names),
+        _ => None,
+    })?;
+    let breaks = |name: &str, rule: &Rule| match rule {
+        Rule::Excludes(one, others) => {
+            *one == name && others.iter().any(&has) || others.contains(&name) && has(one)
+        }
+        Rule::Together(names) => names.contains(&name),
+        _ => false,
+    };
+    let name = names.iter().find(|name| !rules.iter().any(|rule| breaks(name, rule)))?;
+    kind.field_index(name)
+}
+
 /// What a rule misses beside the fields that are given. What lacks one field may break several rules: the one
 /// that says most is said.
 fn broken_rule(kind: KindId, given: FieldSet, place: Span) -> Option<Diagnostic> {
@@ -226,4 +291,10 @@ fn broken_rule(kind: KindId, given: FieldSet, place: Span) -> Option<Diagnostic>
         })
     };
     beside.or_else(one_of)
+}
+
+/// Whether an entry is the material of a thing, or may be.
+fn gives_material(entry: &Entry) -> bool {
+    matches!(entry, Entry::Field(ast::Field { name, .. }) | Entry::Broken(ast::Broken { name: Some(name), .. })
+        if name.text == "material")
 }

@@ -1,13 +1,14 @@
 //! Things: their kind, and their fields.
 
 use super::block::{path_span, path_text};
+use super::fields::one_of_several;
 use super::notes::{Meaning, word_of};
 use super::program::{Around, Base, Expr, ExprKind, FieldPlace, Make, Written};
-use super::scope::{Found, Item, Place, built_in};
+use super::scope::{Item, Place, built_in};
 use super::types::{Element, FieldSet, Kind, Making, Type};
 use super::{Checker, errors};
 use crate::diagnostic::Code;
-use crate::schema::{self, Category, Field, FieldType, KindId, PLACED, Preset};
+use crate::schema::{self, Category, Field, FieldType, PLACED, Preset};
 use crate::span::Span;
 use crate::syntax::ast::{self, Entry, ExprKind as Tree, Name, StatementKind as Statement};
 use crate::units;
@@ -80,7 +81,7 @@ impl Checker<'_> {
 
     /// What stands before `{`: what the thing begins as. `second` is the word behind that.
     fn kind_of(&mut self, path: &ast::Path, second: Option<&Name>) -> (Base, Option<Making>) {
-        let name = &path.first;
+        let (name, wanted) = (&path.first, self.wanted.take());
         if let Some(kind) = schema::kind(&name.text) {
             self.note(name.span, Some(Meaning::Kind(kind)));
             // Which of the two is meant is not known; that the name is taken was reported.
@@ -98,16 +99,18 @@ impl Checker<'_> {
         let Some(found) = self.lookup(&name.text) else {
             if let Some((kind, second)) =
                 second.and_then(|second| Some((schema::kind(&second.text)?, second)))
+                && path.rest.is_empty()
                 && let Some(diagnostic) = errors::before_kind(name, second)
             {
                 self.report(diagnostic);
                 return (Base::Invalid, Some(built_in(kind)));
             }
-            let diagnostic = errors::unknown(Code::E0101, "kind", name, &self.kind_names());
+            let diagnostic = errors::unknown(Code::E0101, "kind", name, &self.kind_names(wanted));
             self.report_lost(&name.text, diagnostic);
             // What stands inside is looked at as if the kind had been spelt right.
-            let built_ins: Vec<&str> =
-                schema::KINDS.iter().map(|kind| kind.name).filter(|kind| !schema::is_part(kind)).collect();
+            let fits = |kind: &&schema::Kind| wanted.is_none_or(|wanted| kind.category == wanted);
+            let built_ins = schema::KINDS.iter().filter(fits).map(|kind| kind.name);
+            let built_ins: Vec<&str> = built_ins.filter(|kind| !schema::is_part(kind)).collect();
             // What has another name elsewhere may have other fields too.
             let guess = errors::closest(&name.text, &built_ins)
                 .filter(|guess| guess.certain || schema::familiar::kind(&name.text).is_none())
@@ -158,6 +161,8 @@ impl Checker<'_> {
     /// lens in its camera) on the other.
     fn sort_entries<'t>(&mut self, entries: &'t [Entry], kind: Option<Kind>, holds: bool) -> Sorted<'t> {
         let Sorted { mut items, mut parts, mut misplaced, mut lost } = Sorted::default();
+        // Looked for where a material stands alone.
+        let mut free = None;
         for entry in entries {
             let Entry::Statement(statement) = entry else {
                 // A broken entry with the name of a field is that field.
@@ -188,7 +193,11 @@ impl Checker<'_> {
                             let (outer, category) = (self.kind_name(kind), kind.category());
                             let diagnostic = match self.material_of(kind, construct) {
                                 true => {
-                                    let free = name.is_none() && !entries.iter().any(gives_material);
+                                    let free = name.is_none()
+                                        && statement.prefixes.is_empty()
+                                        && *free.get_or_insert_with(|| {
+                                            self.lacks_name_of_material(kind, entries)
+                                        });
                                     errors::bare_material(&construct.kind, &outer, free)
                                 }
                                 false => errors::cannot_hold(&construct.kind, &outer, category),
@@ -210,27 +219,6 @@ impl Checker<'_> {
             }
         }
         Sorted { items, parts, misplaced, lost }
-    }
-
-    /// Whether what stands in a thing of a kind is its material, without the name of the field.
-    fn material_of(&mut self, outer: Kind, inner: &ast::Construct) -> bool {
-        let name = &inner.kind.first.text;
-        let category = match (schema::kind(name), self.lookup(name)) {
-            (Some(kind), _) => Some(kind.get().category),
-            (None, Some(Found { ty: Type::Made(making), .. })) => Some(making.kind.category()),
-            _ => None,
-        };
-        category == Some(Category::Material) && self.find_field(outer, "material").is_some()
-    }
-
-    /// The field of `kind` that a statement of this kind, or of a prototype of it, inside fills.
-    fn part_field(&mut self, kind: KindId, inner: &ast::Path) -> Option<usize> {
-        let found = self.lookup(&inner.first.text).map(|found| found.ty);
-        let inner = match found {
-            Some(Type::Made(Making { kind: Kind::BuiltIn(kind), .. })) => kind.get().name,
-            _ => &inner.first.text,
-        };
-        kind.fields().position(|field| matches!(field.ty, FieldType::Part(part) if part == inner))
     }
 
     fn fields(
@@ -339,6 +327,15 @@ impl Checker<'_> {
         if lost.is_some() || missing.len() == 1 {
             make.fields.extend(missing.into_iter().map(|field| (field, Expr::invalid(place))));
         }
+        // So does one of several of which one must be given.
+        let has = |name: &&str| {
+            let index = kind.field_index(name);
+            let given = |index| make.fields.iter().any(|(given, _)| *given == FieldPlace::Index(index));
+            index.is_some_and(|index| making.given.has(index) || given(index))
+        };
+        if let Some(index) = one_of_several(kind, has) {
+            make.fields.push((FieldPlace::Index(index), Expr::invalid(place)));
+        }
     }
 
     fn value_of_field(&mut self, kind: Kind, place: FieldPlace, value: &ast::Expr) -> Expr {
@@ -391,7 +388,7 @@ impl Checker<'_> {
             self.report_lost(&self.text(value.span).into(), diagnostic);
             return Expr::invalid(value.span);
         }
-        let (checked, ty) = self.infer(value);
+        let (checked, ty) = self.infer_wanted(field.ty, value);
         if ty == Type::Invalid {
             return Expr::invalid(value.span);
         }
@@ -399,6 +396,11 @@ impl Checker<'_> {
             let named = self.quoted(value).filter(|(_, ty)| *ty != Type::Invalid && accepts(field.ty, ty));
             let text = self.text(value.span);
             let diagnostic = errors::mismatch(field.name, field.ty, value.span, text, &ty);
+            let number = schema::familiar::number(field.name).filter(|_| diagnostic.code == Code::E0202);
+            let diagnostic = match number {
+                Some(hint) => diagnostic.help(hint),
+                None => diagnostic,
+            };
             self.report(match named {
                 Some((name, _)) => errors::name_in_quotes(diagnostic, &name),
                 None => diagnostic,
@@ -484,10 +486,4 @@ pub(super) fn suggested_unit(ty: FieldType) -> Option<String> {
         FieldType::OneOf(types) => types.iter().find_map(|ty| suggested_unit(*ty)),
         _ => None,
     }
-}
-
-/// Whether an entry is the material of a thing, or may be.
-fn gives_material(entry: &Entry) -> bool {
-    matches!(entry, Entry::Field(ast::Field { name, .. }) | Entry::Broken(ast::Broken { name: Some(name), .. })
-        if name.text == "material")
 }

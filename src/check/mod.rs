@@ -107,6 +107,8 @@ struct Checker<'a> {
     closed: BTreeMap<SmolStr, Span>,
     /// The kinds whose names something declares, which was reported.
     hiding: Vec<crate::schema::KindId>,
+    /// The category of the thing that is made next, where only one can stand.
+    wanted: Option<crate::schema::Category>,
     /// The names of the cameras of the file.
     cameras: Vec<SmolStr>,
     /// How many declared names may still be compared with unknown ones.
@@ -139,6 +141,7 @@ impl<'a> Checker<'a> {
             lost: vec![],
             closed: BTreeMap::new(),
             hiding: vec![],
+            wanted: None,
             cameras: vec![],
             guesses: Cell::new(MAX_GUESSES),
             nodes: 0,

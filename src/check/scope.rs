@@ -4,7 +4,7 @@ use super::notes::{Home, Meaning, Visible, color_of};
 use super::program::{Block, StatementKind};
 use super::types::{Kind, Making, Type};
 use super::{Checker, ExprKind, errors, functions};
-use crate::schema;
+use crate::schema::{self, Category};
 use crate::span::Span;
 use crate::syntax::Rows;
 use crate::syntax::ast::{self, Name, StatementKind as Tree};
@@ -390,9 +390,10 @@ impl Checker<'_> {
         names
     }
 
-    /// Names that may stand before `{`, for suggestions.
-    pub(super) fn kind_names(&self) -> Vec<&str> {
-        let mut names: Vec<&str> = schema::KINDS.iter().map(|kind| kind.name).collect();
+    /// Names that may stand before `{`, for suggestions: of the built-in ones those of a category that is wanted.
+    pub(super) fn kind_names(&self, wanted: Option<Category>) -> Vec<&str> {
+        let fits = |kind: &&schema::Kind| wanted.is_none_or(|wanted| kind.category == wanted);
+        let mut names: Vec<&str> = schema::KINDS.iter().filter(fits).map(|kind| kind.name).collect();
         names.extend(self.declared_names(|known| {
             matches!(known.form, Form::Made | Form::Part) || matches!(known.ty, Type::Made(_))
         }));

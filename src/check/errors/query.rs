@@ -178,8 +178,13 @@ pub(in crate::check) fn path_as_kind(name: &Name, ty: &Type) -> Diagnostic {
 }
 
 pub(in crate::check) fn not_a_function(text: &str, span: Span, ty: &Type) -> Diagnostic {
-    Diagnostic::new(Code::E0201, format!("`{text}` is {}, and cannot be called", ty.describe()), span)
-        .at(ty.describe())
+    let message = format!("`{text}` is {}, and cannot be called", ty.describe());
+    let diagnostic = Diagnostic::new(Code::E0201, message, span).at(ty.describe());
+    match ty {
+        Type::List(_) => diagnostic.help(format!("its items are `{text}[0]` and so on")),
+        Type::Scalar(_) => diagnostic.help(format!("a product has its sign: `{text} * (…)`")),
+        _ => diagnostic,
+    }
 }
 
 pub(in crate::check) fn named_argument_of(function: &str, name: &Name) -> Diagnostic {

@@ -162,7 +162,9 @@ fn unit_code(wanted: Dim, found: Element) -> Code {
 fn with_unit(diagnostic: Diagnostic, text: &str, unit: Option<String>) -> Diagnostic {
     let Some(unit) = unit else { return diagnostic };
     if text.ends_with('%') {
-        return diagnostic.help(format!("a ratio has no unit: write `50% * 1{unit}`, or how much it is"));
+        let number = text.trim_end_matches('%');
+        let shown = if is_bare(number) { format!("{number}%") } else { "(…)".into() };
+        return diagnostic.help(format!("a ratio has no unit: write `{shown} * 1{unit}`, or how much it is"));
     }
     let short = if text.is_empty() || text.len() > 40 || text.contains(['\n', '<']) { "(…)" } else { text };
     let shown = if is_bare(short) { short.to_string() } else { format!("({short})") };

@@ -1,5 +1,6 @@
 //! What is said of names that nothing declares, by what is wanted where they stand.
 
+use super::words::is_nothing;
 use super::{closest, quoted, unknown, unknown_name};
 use crate::check::functions::by_name;
 use crate::color;
@@ -31,8 +32,10 @@ pub(in crate::check) fn unknown_value(
         }
     }
     match wanted {
-        // It is a kind, which makes what is wanted.
-        _ if schema::kind(text).is_some() => unknown_name(name, candidates),
+        // It is a kind, which makes what is wanted, or nothing does.
+        _ if schema::kind(text).is_some() || is_nothing(text) && guess.is_none() => {
+            unknown_name(name, candidates)
+        }
         FieldType::Text if guess.is_none() && setting => {
             diagnostic.help(format!("a text has quotes of its own: `--set 'NAME=\"{text}\"'`"))
         }
