@@ -242,6 +242,13 @@ impl<'t> Builder<'t> {
             self.report(errors::word_in_definition(keyword.as_str(), &name, &second));
             return (Entry::Broken(Broken { name: Some(second), span }), 0);
         }
+        // `let my radius = 1m`
+        if begins {
+            let end = self.text_len() - behind.len() + second.len();
+            let (place, joined) = (name.span.to(self.at(end, end)), format!("{}_{second}", name.text));
+            self.report(errors::name_of_words(&format!("{} {second}", name.text), &joined, place));
+            return (Entry::Broken(Broken { name: None, span }), 0);
+        }
         let place = self.span(keyword).to(name.span);
         if text[name.text.len()..].trim_start_matches(BLANKS).starts_with('(') {
             self.report(errors::function_by_let(keyword.as_str(), &name.text, place));
