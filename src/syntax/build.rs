@@ -198,9 +198,12 @@ impl<'t> Builder<'t> {
                         _ => None,
                     });
                     let other = self.begins_otherwise(&pair);
-                    entries.extend(other.filter(|other| {
-                        !matches!(other, Entry::Broken(other) if other.name.as_ref().map(|name| &name.text) == field.as_ref())
-                    }));
+                    let other = other.filter(|name| field.as_ref() != Some(&name.text));
+                    entries.extend(
+                        other.map(|name| {
+                            Entry::Broken(Broken { name: Some(name), span: self.trimmed(&pair) })
+                        }),
+                    );
                 }
                 Rule::stray => self.stray(&pair),
                 Rule::EOI => {}
