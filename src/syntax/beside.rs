@@ -1,6 +1,6 @@
 //! Text behind a whole entry, on its line: `radius: sqrt 4`, `at: 0 1 0`, `radius: 1 meter`.
 
-use super::ast::{Broken, Entry, ExprKind, Keyword, Name, StatementKind};
+use super::ast::{Entry, ExprKind, Keyword, Name, StatementKind};
 use super::build::{Builder, Node, is_reserved};
 use super::slips::{is_placement, value_of};
 use super::{errors, is_name, leading};
@@ -82,12 +82,11 @@ impl Builder<'_> {
     }
 
     /// `at: (0, 1, 0)m power: 60W`, without a comma: what begins behind a whole entry, if it has a name, is given.
-    pub(super) fn begins_otherwise(&self, pair: &Node) -> Option<Entry> {
+    pub(super) fn begins_otherwise(&self, pair: &Node) -> Option<Name> {
         let text = pair.as_str().trim_ascii_start();
         let word = Some(leading(text, "")).filter(|word| is_name(word))?;
         let start = pair.as_span().start() + pair.as_str().len() - text.len();
-        let name = Name { text: word.into(), span: self.at(start, start + word.len()) };
-        Some(Entry::Broken(Broken { name: Some(name), span: self.trimmed(pair) }))
+        Some(Name { text: word.into(), span: self.at(start, start + word.len()) })
     }
 }
 

@@ -20,8 +20,9 @@ pub(super) fn repetition<'t>(
         Some(binder) if binder.as_str() == "in" => {}
         Some(sign) => builder.report(slips::missing_in(sign.as_str(), builder.span(&sign))),
         None if parts.peek().is_some_and(|head| head.as_str().trim_ascii().is_empty()) => {
-            let place = Span { end: span.start + 3, ..span };
-            builder.report(slips::unfinished("for", place));
+            let mut slip = slips::missing_in("", variable.span.after());
+            slip.fix = None;
+            builder.report(slip);
             let list = invalid(variable.span.after());
             let body = empty(span.after());
             return (StatementKind::For { variable, list, body }, 1);
@@ -36,13 +37,17 @@ pub(super) fn repetition<'t>(
             if super::leading(more, "") == "in" && is_name(word) {
                 // `for each i in list { … }`
                 let extra = Span { end: place.start, ..variable.span };
-                builder.report(slips::named_twice(&variable.text, word, extra));
+                let slip = slips::named_twice(&variable.text, word, extra);
+                let certain = slip.fix.is_some();
+                builder.report(slip);
                 let variable = Name { text: word.into(), span: place };
                 let (list, span) = (invalid(place), span.after());
-                let (body, depth) = body.map_or_else(|| (empty(span), 0), |body| builder.block(body));
+                let (mut body, depth) = body.map_or_else(|| (empty(span), 0), |body| builder.block(body));
+                // Which of them is used in the body, and as what, is not known.
+                body.entries.retain(|_| certain);
                 return (StatementKind::For { variable, list, body }, depth + 1);
             }
-            if matches!(word, "of" | "ni" | "n" | "i" | "im" | "on" | "is")
+            if matches!(word, "of" | "ni" | "n" | "i" | "im" | "on" | "is" | "from")
                 && !more.is_empty()
                 && !more.starts_with('{')
             {

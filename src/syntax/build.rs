@@ -171,6 +171,10 @@ impl<'t> Builder<'t> {
                     entries.last_mut().into_iter().for_each(spoil);
                     headless = Some(pair.as_span().start());
                 }
+                Rule::crowded if self.word_before_kind(&pair, entries.last()) => {
+                    entries.last_mut().into_iter().for_each(spoil);
+                    (otherwise, muted) = (true, Some(self.reported()));
+                }
                 Rule::crowded => self.crowded(&pair),
                 Rule::extra | Rule::decimal | Rule::listed
                     if explained || explained_value || self.unbraced.get() => {}
@@ -188,7 +192,18 @@ impl<'t> Builder<'t> {
                     // What follows behind a comma belongs to it: `rgb 1, 0, 0`.
                     lost = Some(pair.as_span().end());
                     entries.last_mut().into_iter().for_each(spoil);
-                    entries.extend(self.begins_otherwise(&pair));
+                    // `radius: my radius`: it is not given again.
+                    let field = entries.last().and_then(|last| match last {
+                        Entry::Field(field) => Some(field.name.text.clone()),
+                        _ => None,
+                    });
+                    let other = self.begins_otherwise(&pair);
+                    let other = other.filter(|name| field.as_ref() != Some(&name.text));
+                    entries.extend(
+                        other.map(|name| {
+                            Entry::Broken(Broken { name: Some(name), span: self.trimmed(&pair) })
+                        }),
+                    );
                 }
                 Rule::stray => self.stray(&pair),
                 Rule::EOI => {}
@@ -239,7 +254,7 @@ impl<'t> Builder<'t> {
             return self.marked(pair, top);
         }
         if matches!(rule, Rule::broken | Rule::reported) {
-            if let Some(name) = self.quoted_field(&pair).filter(|_| !top) {
+            if !top && let Some(name) = self.quoted_field(&pair) {
                 return (Entry::Broken(Broken { name: Some(name), span }), 0);
             }
             self.unexpected(&pair, |token, span| match is_reserved(token) {

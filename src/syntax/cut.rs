@@ -47,6 +47,8 @@ pub(super) struct Cut<'t> {
     pub(super) sink: Sink,
     /// Closers that close nothing, in order.
     pub(super) strays: Vec<Stray>,
+    /// Where comments begin as in other languages.
+    pub(super) foreign: Vec<Span>,
 }
 
 /// A closer without an opener, or a run of them.
@@ -197,7 +199,9 @@ struct Cutter<'t> {
     before: Before,
     ended_in_comment: bool,
     /// Where comments begin as in other languages.
-    foreign_comments: Vec<Span>,
+    foreign_comments: Vec<errors::ForeignComment>,
+    /// Whether `-->` may follow.
+    markup_ends: bool,
 }
 
 /// Where a text begins behind the marks that tell its encoding. Programs that put theirs before another's leave several,
@@ -216,7 +220,13 @@ impl<'t> Cutter<'t> {
             bytes: text.as_bytes(),
             splits,
             most,
-            out: Cut { items: vec![], comments: vec![], sink: Sink::default(), strays: vec![] },
+            out: Cut {
+                items: vec![],
+                comments: vec![],
+                sink: Sink::default(),
+                strays: vec![],
+                foreign: vec![],
+            },
             at: after_marks(text),
             indent: 0,
             last: Last::Open,
@@ -236,6 +246,7 @@ impl<'t> Cutter<'t> {
             before: Before::default(),
             ended_in_comment: false,
             foreign_comments: vec![],
+            markup_ends: true,
         }
     }
 
@@ -295,7 +306,7 @@ impl<'t> Cutter<'t> {
             self.begin(start);
         }
         self.last = match byte {
-            b'#' | b'-' | b'<' if self.begins_foreign_comment() => self.foreign_comment(),
+            b'#' | b'-' | b';' if self.begins_foreign_comment() => self.foreign_comment(),
             b';' if let Some(last) = self.counting_loop() => last,
             b'(' | b'[' | b'{' => self.open(),
             b')' | b']' | b'}' => self.close(first_on_line),

@@ -13,6 +13,7 @@ pub(super) use literals::*;
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::span::Span;
+use crate::syntax::ast::Name;
 
 /// Beyond so many nobody reads on, and a hostile file must not exhaust the memory.
 const MAX_DIAGNOSTICS: usize = 1000;
@@ -286,7 +287,7 @@ pub(super) fn missing_value(before: &str, span: Span) -> Diagnostic {
             "a condition compares two values: `n > 2`"
         }
         "+" | "-" | "*" | "/" => "write what follows the sign, or leave it out",
-        "in" => "a list or a range follows: `range(3)`, `[1m, 2m]`",
+        "in" => "a range or a list follows: `1 to 20`, `[1m, 2m]`",
         _ => "write a value such as `5cm`, `(0, 1, 0)m`, `#d94f30` or a name",
     })
 }
@@ -358,6 +359,22 @@ pub(super) fn missing_equals(keyword: &str, name: &str, span: Span) -> Diagnosti
     Diagnostic::new(Code::E0001, format!("`=` is missing after `{keyword} {name}`"), span)
         .at("named, but not defined")
         .help(format!("write `{keyword} {name} = {value}`"))
+}
+
+/// `let mut i = 0`
+pub(super) fn word_in_definition(keyword: &str, word: &Name, name: &Name) -> Diagnostic {
+    unexpected(&word.text, word.span)
+        .at("no word stands before the name")
+        .help(format!("write `{keyword} {} = …`, which never changes", name.text))
+        .fix(Span { end: name.span.start, ..word.span }, "")
+}
+
+/// `export let r = 1m`
+pub(super) fn word_before_statement(word: &Name, keyword: &str, place: Span) -> Diagnostic {
+    unexpected(&word.text, word.span)
+        .at(format!("no word stands before `{keyword}`"))
+        .help("leave it out: what a file defines is known to those that import it")
+        .fix(Span { end: place.start, ..word.span }, "")
 }
 
 /// `let f(x) = 2 * x`

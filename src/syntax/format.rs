@@ -89,6 +89,7 @@ fn broken(file: &File, text: &str, slips: &[Diagnostic]) -> Vec<Range<usize>> {
         })
         // A closer that is overlooked is part of the slip that its opener is.
         .chain(cut.strays.iter().map(|stray| written.whole(stray.span, text)))
+        .chain(cut.foreign.iter().map(|&place| written.whole(place, text)))
         .map(Span::range)
         .collect();
     places.sort_by_key(|place| place.start);

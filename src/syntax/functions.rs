@@ -43,7 +43,9 @@ pub(super) fn function<'t>(builder: &Builder<'t>, parts: Pairs<'t, Rule>, span: 
                 let touches = !builder.all_before(arrow.as_span().start()).ends_with(super::BLANKS);
                 builder.report(slips::wrong_arrow(sign, builder.trimmed(&arrow), touches));
             }
+            let known = builder.reported();
             result = type_name(builder, parts.next().expect("a type follows"), "the result", "fn");
+            complete &= builder.reported() == known;
         }
         None if complete => {
             complete = false;

@@ -79,7 +79,11 @@ impl<'t> Builder<'t> {
         let open = Span { end: span.start + 1, ..span };
         let inside = self.written(span).and_then(|text| text.strip_prefix('{')?.split_once('}'));
         match inside {
-            Some((inside, _)) if errors::is_components(inside) => {
+            // The brace may be one of a comment or a text.
+            Some((inside, _))
+                if errors::is_components(inside)
+                    && !["/*", "//", "\""].iter().any(|sign| inside.contains(sign)) =>
+            {
                 let start = open.end + inside.len() as u32;
                 errors::components_in_braces(inside.trim(), open, Span { start, end: start + 1, ..span })
             }

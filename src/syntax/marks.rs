@@ -61,7 +61,8 @@ impl<'t> Builder<'t> {
     fn prefix(&self, pair: Node<'t>) -> Deep<Option<Prefix>> {
         let span = self.trimmed(&pair);
         let mut inner = pair.into_inner();
-        let Some(word) = inner.next().filter(|word| word.as_rule() == Rule::word) else {
+        let sign = inner.next().expect("a mark begins with its sign");
+        let Some(word) = sign.into_inner().next() else {
             self.report(statements::missing_mark(Span { end: span.start + 1, ..span }));
             return (None, 0);
         };

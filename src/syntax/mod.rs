@@ -64,6 +64,28 @@ pub(crate) fn is_name(text: &str) -> bool {
     is_word(text) && !RESERVED.contains(&text)
 }
 
+/// The first bracket of a text that has no other one in it, and whether it closes.
+fn unpaired(text: impl Iterator<Item = u8>) -> Option<(usize, bool)> {
+    let mut open = vec![];
+    for (at, byte) in text.enumerate() {
+        match byte {
+            b'(' | b'[' | b'{' => open.push((at, byte)),
+            b')' | b']' | b'}' => match open.pop() {
+                Some((_, opener)) if matches!((opener, byte), (b'(', b')') | (b'[', b']') | (b'{', b'}')) => {
+                }
+                _ => return Some((at, true)),
+            },
+            _ => {}
+        }
+    }
+    open.first().map(|&(at, _)| (at, false))
+}
+
+/// Whether each bracket of a text has its other one in it.
+fn pairs(text: &str) -> bool {
+    unpaired(text.bytes()).is_none()
+}
+
 /// The word that a text begins with, in which these signs count as letters.
 fn leading<'t>(text: &'t str, signs: &str) -> &'t str {
     let ends = |c: char| !(c.is_alphanumeric() || c == '_' || signs.contains(c));

@@ -5,6 +5,7 @@ use super::build::{Builder, Node};
 use super::errors;
 use super::{BLANKS, NAMING_WORDS, PLACED_WORDS, is_name, leading};
 use crate::diagnostic::Diagnostic;
+use crate::span::Span;
 
 impl Builder<'_> {
     /// `sphere "ball" { … }`, `sphere 2nd { … }`, `sphere my-ball { … }`: what stands as the name of a thing and cannot
@@ -51,6 +52,23 @@ impl Builder<'_> {
         found
     }
 
+    /// `export let r = 1m`: a word of another language before a statement.
+    pub(super) fn before_statement(&self, word: &Name, value: &Node, span: Span) -> Option<Entry> {
+        let start = value.as_span().start();
+        let text = self.after(start);
+        let keyword = leading(text, "");
+        let behind = text[keyword.len()..].trim_start_matches(BLANKS);
+        let name =
+            Some(leading(behind, "")).filter(|name| NAMING_WORDS.contains(&keyword) && is_name(name))?;
+        let known =
+            matches!(word.text.as_str(), "export" | "pub" | "public" | "private" | "static" | "local");
+        let place = self.at(start, start + keyword.len());
+        known.then(|| self.report(errors::word_before_statement(word, keyword, place)))?;
+        let start = self.text_len() - behind.len();
+        let name = Name { text: name.into(), span: self.at(start, start + name.len()) };
+        Some(Entry::Broken(Broken { name: Some(name), span }))
+    }
+
     /// `"radius": 1m`: the name of a field, as JSON has it.
     pub(super) fn quoted_field(&self, pair: &Node) -> Option<Name> {
         let (name, behind) = pair.as_str().strip_prefix('"')?.split_once('"')?;
@@ -74,7 +92,9 @@ impl Builder<'_> {
             return None;
         }
         let place = self.at(start, start + name.len());
-        self.report(errors::name_of_words(name, &words.join("_"), place));
+        // `new sphere ball { … }`
+        let before = errors::word_before_thing(kind, name, place).filter(|_| words.len() == 2);
+        self.report(before.unwrap_or_else(|| errors::name_of_words(name, &words.join("_"), place)));
         // It reaches to the body, which is that of no other thing.
         Some(Entry::Broken(Broken { name: None, span: kind.span.to(place) }))
     }

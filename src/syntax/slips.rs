@@ -233,6 +233,23 @@ impl<'t> Builder<'t> {
             self.report(errors::no_name(keyword.as_str(), whole, self.at(start, start + whole.len())));
             return (Entry::Broken(Broken { name: Some(name), span }), 0);
         }
+        // `let mut i = 0`
+        let behind = text[name.text.len()..].trim_start_matches(BLANKS);
+        let second = leading(behind, "");
+        let begins = behind[second.len()..].trim_start_matches(BLANKS).starts_with('=') && is_name(second);
+        if begins && matches!(name.text.as_str(), "mut" | "mutable" | "var" | "const" | "rec") {
+            let start = self.text_len() - behind.len();
+            let second = Name { text: second.into(), span: self.at(start, start + second.len()) };
+            self.report(errors::word_in_definition(keyword.as_str(), &name, &second));
+            return (Entry::Broken(Broken { name: Some(second), span }), 0);
+        }
+        // `let my radius = 1m`
+        if begins {
+            let end = self.text_len() - behind.len() + second.len();
+            let (place, joined) = (name.span.to(self.at(end, end)), format!("{}_{second}", name.text));
+            self.report(errors::name_of_words(&format!("{} {second}", name.text), &joined, place));
+            return (Entry::Broken(Broken { name: None, span }), 0);
+        }
         let place = self.span(keyword).to(name.span);
         if text[name.text.len()..].trim_start_matches(BLANKS).starts_with('(') {
             self.report(errors::function_by_let(keyword.as_str(), &name.text, place));
@@ -255,6 +272,17 @@ impl<'t> Builder<'t> {
             return (mistyped, 0);
         }
         let value = inner.next().expect("this slip has a value");
+        // `background-color: red`
+        let whole = leading(self.after(word.as_span().start()), "-");
+        let rest = self.after(word.as_span().start() + whole.len()).trim_start_matches(BLANKS);
+        if whole.contains('-') && rest.starts_with(':') && !top {
+            let place = self.at(word.as_span().start(), word.as_span().start() + whole.len());
+            self.report(errors::no_name("", whole, place));
+            return (Entry::Broken(Broken { name: None, span }), 0);
+        }
+        if let Some(entry) = self.before_statement(&name, &value, span) {
+            return (entry, 0);
+        }
         let value_span = self.at(value.as_span().start(), self.before(value.as_span().end()).len());
         let field = &name.text == "material" && !top;
         if let Some(named) = self.named_otherwise(&name, &value, span).filter(|_| !is_reserved(&name.text)) {
@@ -307,7 +335,8 @@ impl<'t> Builder<'t> {
         } else {
             self.report(errors::no_brace(&name.text, name.span, value_span));
         }
-        (Entry::Broken(Broken { name: Some(name), span }), 0)
+        let name = Some(name).filter(|name| !is_reserved(&name.text));
+        (Entry::Broken(Broken { name, span }), 0)
     }
 
     /// `length r = 1m`: a definition as languages have it that name its type.
@@ -429,7 +458,27 @@ impl<'t> Builder<'t> {
         let word = errors::first_token(&rest[skipped..]);
         let start = start + skipped;
         let edit = self.at(self.before(start).len(), start);
-        self.report(errors::crowded(word, self.at(start, start + word.len()), edit));
+        let behind = self.after(start + word.len()).trim_start_matches(BLANKS);
+        let next = leading(behind, "");
+        // Of two words and a body, the first may be anything.
+        let statement = super::NAMING_WORDS.contains(&word) && is_name(next);
+        let by_itself = statement || is_name(word) && behind.starts_with(':');
+        let slip = errors::crowded(word, self.at(start, start + word.len()), edit);
+        self.report(if by_itself { slip } else { slip.ask("add a comma") });
+    }
+
+    /// `material: shiny metal { … }`, `let ball = new sphere { … }`: whether the value is a word before the kind.
+    pub(super) fn word_before_kind(&self, pair: &Node, before: Option<&Entry>) -> bool {
+        let Some(value) = before.and_then(value_of) else { return false };
+        let ExprKind::Name(word) = &value.kind else { return false };
+        let rest = self.after(pair.as_span().start()).trim_start_matches(BLANKS);
+        let kind = leading(rest, ".");
+        if !rest[kind.len()..].trim_start_matches(BLANKS).starts_with('{') || !kind.split('.').all(is_name) {
+            return false;
+        }
+        let start = self.text_len() - rest.len();
+        self.report(errors::two_kinds(word, kind, value.span, self.at(start, start + kind.len())));
+        true
     }
 
     pub(super) fn stray(&self, pair: &Node) {

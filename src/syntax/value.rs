@@ -1,5 +1,6 @@
 //! Expressions: the flat list that the grammar gives becomes a tree by precedence.
 
+use super::BLANKS;
 use super::angled;
 use super::ast::{BinaryOp, Expr, ExprKind, Name, Path, UnaryOp};
 use super::branches::is_half_typed;
@@ -7,6 +8,7 @@ use super::build::{Builder, Deep, Node, Rule, is_reserved};
 use super::elements::{elements, group, list};
 use super::errors::{self, statements};
 use super::literal::{color, literal, text};
+use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 use pest::pratt_parser::{Assoc, Op, PrattParser};
 use smol_str::SmolStr;
@@ -144,6 +146,13 @@ fn infix(builder: &Builder, left: Deep<Expr>, operator: &Node, right: Deep<Expr>
     {
         let function = if rule == Rule::foreign_power { "pow" } else { "mod" };
         let sign = operator.as_str();
+        // `2 ** 3 ** 2`: of the first it was said.
+        if matches!(left.kind, ExprKind::Invalid) {
+            return invalid(span);
+        }
+        let before = builder.before(left.span.range().start - builder.base());
+        let behind = builder.after(right.span.range().end - builder.base()).trim_start_matches(BLANKS);
+        let alone = !before.ends_with(['*', '/', '%', '^', '-']) && !behind.starts_with(['*', '/', '%', '^']);
         if let (
             ExprKind::Quantity { unit, .. } | ExprKind::Scaled { unit, .. },
             ExprKind::Number { value, int: true },
@@ -151,13 +160,30 @@ fn infix(builder: &Builder, left: Deep<Expr>, operator: &Node, right: Deep<Expr>
         ) = (&left.kind, &right.kind, rule)
         {
             let edit = Span { start: left.span.end, end: right.span.start, ..at };
-            builder.report(errors::power_of_unit(sign, &unit.text, *value, at, edit));
+            let slip = errors::power_of_unit(sign, &unit.text, *value, at, edit);
+            // `2m ^ 2` is what `2m` is times itself: only that of the unit touches it.
+            let touches = edit == at;
+            let unit = &unit.text;
+            builder.report(match alone && touches {
+                true => slip,
+                false => slip
+                    .help(format!(
+                        "write `{unit}{value}` for the unit's power, and `a * a` for that of the value"
+                    ))
+                    .ask(format!("write `{unit}{value}`")),
+            });
             return invalid(span);
         }
         let slip = errors::operator_for_function(sign, function, at, left.span, right.span);
         // A power is one of numbers, and whether a name is that of one is not known here.
-        let certain = rule != Rule::foreign_power || is_number(&left) && is_number(&right);
-        builder.report(if certain { slip } else { slip.ask(format!("write `{function}(a, b)`")) });
+        let certain = rule != Rule::foreign_power || alone && is_number(&left) && is_number(&right);
+        // `2 ** 3 ** 2`: which of them is meant first is not known.
+        let another = behind.starts_with(['^']) || behind.starts_with("**");
+        builder.report(match certain {
+            true => slip,
+            false if another => Diagnostic { fix: None, ..slip },
+            false => slip.ask(format!("write `{function}(a, b)`")),
+        });
         return invalid(span);
     }
     if operator.as_str() == "|" {
@@ -240,7 +266,8 @@ fn foreign(builder: &Builder, operator: &Node, left: Span) -> Option<BinaryOp> {
         Rule::foreign_product => BinaryOp::Divide,
         Rule::foreign_compare => match operator.as_str() {
             "≥" => BinaryOp::GreaterEqual,
-            "≠" => BinaryOp::NotEqual,
+            "===" => BinaryOp::Equal,
+            "≠" | "!==" => BinaryOp::NotEqual,
             _ => BinaryOp::LessEqual,
         },
         _ => return None,

@@ -1,7 +1,8 @@
 //! What other languages begin comments and directives with, and the decimal comma.
 
-use super::super::{BLANKS, errors};
-use super::{Cutter, Last, is_word};
+use super::super::{BLANKS, NAMING_WORDS, errors, unpaired};
+use super::{Cutter, Last, Level, is_word};
+use errors::ForeignComment;
 
 /// The longest head of a statement, in bytes, that is looked at: the time stays in proportion to the text.
 pub(super) const MAX_HEAD: usize = 200;
@@ -59,37 +60,83 @@ impl Cutter<'_> {
     /// begins no entry.
     pub(super) fn begins_foreign_comment(&self) -> bool {
         let entry = matches!(self.innermost(), 0 | b'{') && self.last == Last::Open && self.splits;
+        let behind = self.last == Last::Operand && self.splits;
         let next = self.byte(self.at + 1);
         match self.bytes[self.at] {
             b'#' => {
                 // A comment of ours stands apart when it is laid out.
                 let comments = ["//", "/*"].iter().any(|sign| self.text[self.at + 1..].starts_with(sign));
-                let apart = comments || matches!(next, b' ' | b'\t' | b'\x0c' | b'#' | b'!');
-                entry || apart && self.last == Last::Operand && self.splits
+                entry || behind && (comments || matches!(next, b' ' | b'\t' | b'\x0c' | b'#' | b'!'))
             }
-            b'<' => entry && self.text[self.at..].starts_with("<!--"),
-            _ => entry && next == b'-',
+            b';' => matches!(self.innermost(), 0 | b'{') && self.splits && self.are_words(self.at + 1),
+            _ => next == b'-' && (entry || behind && self.are_words(self.at + 2)),
         }
     }
 
-    /// Takes the rest of the line for what it is meant as.
+    /// Whether several words follow on the line, and nothing else, which are no entry and go on with no value.
+    fn are_words(&self, at: usize) -> bool {
+        if !matches!(self.byte(at), b' ' | b'\t') {
+            return false;
+        }
+        let near = self.text.floor_char_boundary((at + MAX_HEAD).min(self.text.len()));
+        let line = self.text[at..near].split(['\n', '}', ')', ']']).next().unwrap_or("");
+        let mut words = line.split_ascii_whitespace();
+        let begins = |word| NAMING_WORDS.contains(&word) || matches!(word, "import" | "if" | "assert");
+        let joins = |word| matches!(word, "and" | "or" | "to" | "then" | "else" | "if" | "in");
+        let first = words.next().is_some_and(|word| super::super::is_word(word) && !begins(word));
+        let second = words.next().is_some_and(|word| super::super::is_word(word) && !joins(word));
+        first && second && words.all(super::super::is_word)
+    }
+
+    /// Takes the rest of the line for what it is meant as, up to what closes a bracket that was opened on the line.
     pub(super) fn foreign_comment(&mut self) -> Last {
         let start = self.at;
-        let line = self.text[start..].split('\n').next().unwrap_or("").trim_ascii_end();
-        let length = line.len();
-        let word = self.word(start + 1);
-        if line.starts_with('#') && word.bytes().next().is_some_and(is_word) {
-            let place = self.span(start, start + 1 + word.len());
+        let line = || self.text[start..].split('\n').next().unwrap_or("").trim_ascii_end().len();
+        let (first, word) = (self.bytes[start], self.word(start + 1));
+        if first == b'#' && word.bytes().next().is_some_and(is_word) {
+            let (place, length) = (self.span(start, start + 1 + word.len()), line());
             self.out.sink.push(errors::directive(word, place));
-        } else {
-            let sign = match line.strip_prefix("<!") {
-                Some(dashes) => "<!".len() + dashes.bytes().take_while(|&byte| byte == b'-').count(),
-                None => line.bytes().take_while(|&byte| byte == line.as_bytes()[0]).count(),
-            };
-            self.foreign_comments.push(self.span(start, start + sign));
+            self.blot(start, start + length);
+            return self.take(length, Last::Operand);
         }
+        let rest = &self.bytes[start..];
+        let sign = rest.iter().take_while(|&&byte| byte == first).count();
+        // No more of the line is looked at than is taken.
+        let lone = unpaired(rest.iter().copied().take_while(|&byte| byte != b'\n'));
+        let here = |level: &Level| !self.text[level.at..start].contains('\n');
+        let place = self.span(start, start + sign);
+        let (length, edits) = match lone {
+            Some((at, true)) if self.beyond == 0 && self.levels.last().is_some_and(here) => {
+                let length = self.text[start..start + at].trim_ascii_end().len();
+                let end = self.span(start + length, start + length);
+                let whole = self.text[start..start + length].contains("*/");
+                (length, if whole { vec![] } else { vec![(place, "/*"), (end, " */")] })
+            }
+            _ => (line(), vec![(place, "//")]),
+        };
+        let certain = lone.is_none() && (first == b'#' || self.last == Last::Open);
+        self.foreign_comments.push(ForeignComment { place, edits, certain });
         self.blot(start, start + length);
         self.take(length, Last::Operand)
+    }
+
+    /// `<!-- a comment -->`: where it ends, if one begins here. Without its end it goes to that of its line.
+    pub(super) fn markup(&mut self) -> Option<usize> {
+        let (start, rest) = (self.at, &self.text[self.at..]);
+        let inside = rest.strip_prefix("<!--")?;
+        let place = self.span(start, start + "<!--".len());
+        let close = self.markup_ends.then(|| inside.find("-->")).flatten();
+        // Where none is behind one, none is behind the next.
+        self.markup_ends = close.is_some();
+        let close = close.map(|length| start + "<!--".len() + length);
+        // What closes a comment of ours would end it too early.
+        let edits = match close.filter(|&close| !self.text[start..close].contains("*/")) {
+            Some(close) => vec![(place, "/*"), (self.span(close, close + "-->".len()), "*/")],
+            None => vec![],
+        };
+        self.foreign_comments.push(ForeignComment { place, certain: !edits.is_empty(), edits });
+        let line = || start + rest.find('\n').unwrap_or(rest.len());
+        Some(close.map_or_else(line, |close| close + "-->".len()))
     }
 
     /// `for i = 0; i < 3; i++ {`: takes the head of a loop that counts for what it is meant as.
@@ -111,11 +158,16 @@ impl Cutter<'_> {
         Some(self.take(rest.len(), Last::Operand))
     }
 
-    /// One message for all the comments that begin otherwise.
+    /// One message for all the comments that begin otherwise and are mended, and one for each that may be more.
     pub(super) fn report_foreign_comments(&mut self) {
-        let sign = self.foreign_comments.first().map_or("", |place| &self.text[place.range()]);
-        if let Some(diagnostic) = errors::foreign_comments(sign, &self.foreign_comments) {
-            self.out.sink.push(diagnostic);
+        let all = std::mem::take(&mut self.foreign_comments);
+        self.out.foreign = all.iter().map(|found| found.place).collect();
+        let (certain, others): (Vec<_>, Vec<_>) = all.into_iter().partition(|found| found.certain);
+        for found in std::iter::once(&certain[..]).chain(others.chunks(1)) {
+            let sign = found.first().map_or("", |first| &self.text[first.place.range()]);
+            if let Some(diagnostic) = errors::foreign_comments(sign, found) {
+                self.out.sink.push(diagnostic);
+            }
         }
     }
 }

@@ -31,6 +31,13 @@ impl<'t> Cutter<'t> {
                     let span = self.span(start, self.at);
                     self.out.comments.push(Comment { span });
                 }
+                b'<' if let Some(end) = self.markup() => {
+                    gap.comment = true;
+                    if let Some(index) = self.bytes[self.at..end].iter().position(|&b| b == b'\n') {
+                        gap.first_newline.get_or_insert(self.at + index);
+                    }
+                    self.at = end;
+                }
                 _ => break,
             }
         }
@@ -258,7 +265,10 @@ impl<'t> Cutter<'t> {
         let before = &self.bytes[..self.end];
         let word = before.iter().rev().take_while(|&&byte| is_word(byte)).count();
         let ends_value = match before[self.end - word..].first() {
-            Some(first) => first.is_ascii_digit(),
+            // `(0, 1, 0)m {`
+            Some(first) => {
+                first.is_ascii_digit() || matches!(self.bytes[..self.end - word].last(), Some(b')'))
+            }
             None => before.ends_with(b")") || before.ends_with(b"]"),
         };
         ends_value && (line.starts_with("for ") || line.starts_with("if "))
@@ -269,7 +279,10 @@ impl<'t> Cutter<'t> {
         let Some(level) = self.levels.last().filter(|level| level.bracket != b'{') else { return false };
         match self.last {
             Last::Operand => self.begins_item() || (self.begins_field() && !level.spread),
-            Last::Open => self.end > level.at + 1 && self.begins_field() && !level.call,
+            Last::Open => {
+                let defines = self.begins_statement() && !matches!(self.word(self.at), "for" | "");
+                self.end > level.at + 1 && (self.begins_field() && !level.call || defines)
+            }
             Last::Operator | Last::Definer | Last::Prefix => false,
         }
     }

@@ -142,9 +142,14 @@ pub(in crate::syntax) fn beside_name(
     diagnostic.help(match made {
         true if is_name => format!("a kind has its fields in braces: `{name} {{ color: {shown} }}`"),
         true => format!("a kind has its fields in braces: `{name} {{ … }}`"),
-        false => format!(
-            "what a function takes stands in parentheses: `{name}({shown})`; else a comma or an operator is missing"
-        ),
+        false if units::is_unit(token) => {
+            format!("a unit touches its number: `1{token}`; times a value that is `{name} * 1{token}`")
+        }
+        false => {
+            "what a function takes stands in parentheses, as in `sqrt(2)`; else a comma or an operator is \
+                  missing"
+                .to_string()
+        }
     })
 }
 
@@ -166,6 +171,42 @@ pub(in crate::syntax) fn kindless_field(field: &str, open: Span) -> Option<Diagn
             .offer("make it `diffuse`", vec![(open.before(), "diffuse ".into())]),
         _ => return None,
     })
+}
+
+/// What stands before a kind elsewhere and says nothing here, or the mark that is meant.
+fn before_kind(word: &str) -> Option<&'static str> {
+    match word {
+        "new" | "make" | "create" | "add" | "draw" => Some(""),
+        "off" | "hide" | "hidden" | "disable" | "disabled" | "skip" => Some("@off "),
+        "solo" | "only" => Some("@solo "),
+        _ => None,
+    }
+}
+
+/// `new sphere ball { … }`, `off sphere ball { … }`, of which the kind and the name are given.
+pub(in crate::syntax) fn word_before_thing(word: &Name, kind: &str, thing: Span) -> Option<Diagnostic> {
+    let mark = before_kind(&word.text)?;
+    let diagnostic = unexpected(&word.text, word.span).at("no word stands before a kind");
+    let diagnostic = diagnostic.help(match mark {
+        "" => format!("leave it out: a thing begins with its kind: `{kind} {{ … }}`"),
+        _ => format!("a mark begins with `@`: `{mark}{kind} {{ … }}`"),
+    });
+    Some(diagnostic.fix(Span { end: thing.start, ..word.span }, mark))
+}
+
+/// `material: shiny metal { … }`, `let ball = new sphere { … }`
+pub(in crate::syntax) fn two_kinds(word: &str, kind: &str, first: Span, second: Span) -> Diagnostic {
+    let diagnostic =
+        unexpected(kind, second).at("a value stands before this already").label(first, "this word");
+    let leave_out =
+        (format!("leave `{word}` out"), vec![(Span { end: second.start, ..first }, String::new())]);
+    if before_kind(word).is_some() {
+        let help = format!("leave `{word}` out: a value begins with its kind: `{kind} {{ … }}`");
+        return diagnostic.help(help).offer(leave_out.0, leave_out.1);
+    }
+    diagnostic
+        .help(format!("one word stands before a body: `{kind} {{ … }}` or `{word} {{ … }}`"))
+        .offer(leave_out.0, leave_out.1)
 }
 
 /// `sphere { material { color: red } }`
@@ -376,14 +417,37 @@ pub(in crate::syntax) fn unbraced(word: &str, colon: Span) -> Diagnostic {
     })
 }
 
-/// `# a comment`, `-- a comment`: the places of what begins each of them.
-pub(in crate::syntax) fn foreign_comments(sign: &str, places: &[Span]) -> Option<Diagnostic> {
-    let diagnostic = unexpected(sign, *places.first()?).at("a comment begins with `//`");
-    let diagnostic = diagnostic.help(match places.len() {
-        1 => "write `//`".to_string(),
-        n => format!("write `//`, here and in {} more {}", n - 1, if n == 2 { "place" } else { "places" }),
+/// A comment as another language has it.
+pub(in crate::syntax) struct ForeignComment {
+    /// Of the sign that it begins with.
+    pub(in crate::syntax) place: Span,
+    /// What makes it one of ours; none where nothing does.
+    pub(in crate::syntax) edits: Vec<(Span, &'static str)>,
+    /// Whether it can be nothing else, and holds nothing else.
+    pub(in crate::syntax) certain: bool,
+}
+
+/// `# a comment`, `-- a comment`, `<!-- a comment -->`: those of a text that are as certain, of which the first begins
+/// with `sign`.
+pub(in crate::syntax) fn foreign_comments(sign: &str, found: &[ForeignComment]) -> Option<Diagnostic> {
+    let first = found.first()?;
+    let diagnostic = unexpected(sign, first.place).at("a comment begins with `//`");
+    let ours = match first.edits[..] {
+        [(_, "/*"), ..] => "`/* … */`",
+        _ if sign.starts_with(';') => "`//` before a comment, and a comma before another entry",
+        _ => "`//`",
+    };
+    let diagnostic = diagnostic.help(match found.len() {
+        1 => format!("write {ours}"),
+        n => format!("write {ours}, here and in {} more {}", n - 1, if n == 2 { "place" } else { "places" }),
     });
-    Some(places.iter().fold(diagnostic, |diagnostic, place| diagnostic.fix(*place, "//")))
+    let mut edits = found.iter().flat_map(|found| &found.edits).peekable();
+    if found.iter().all(|found| found.certain) {
+        return Some(edits.fold(diagnostic, |diagnostic, (place, with)| diagnostic.fix(*place, *with)));
+    }
+    let offered = edits.peek().is_some();
+    let edits = edits.map(|&(place, with)| (place, with.to_string())).collect();
+    Some(if offered { diagnostic.offer("make it a comment", edits) } else { diagnostic })
 }
 
 /// `#include "shapes.inc"`, `#declare R = 2;`

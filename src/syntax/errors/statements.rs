@@ -196,7 +196,7 @@ pub(in crate::syntax) fn head_in_parentheses(head: &str, span: Span, touches: bo
     let inside = inside.filter(|inside| {
         let name = crate::syntax::leading(inside, "");
         let behind = inside[name.len()..].trim_ascii_start();
-        is_name(name) && crate::syntax::leading(behind, "") == "in"
+        is_name(name) && crate::syntax::leading(behind, "") == "in" && crate::syntax::pairs(inside)
     });
     let Some(inside) = inside else {
         return counting_loop(span);
@@ -209,19 +209,27 @@ pub(in crate::syntax) fn head_in_parentheses(head: &str, span: Span, touches: bo
 
 /// `for each i in list`; `span` is up to the second word.
 pub(in crate::syntax) fn named_twice(word: &str, name: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(
+    let diagnostic = Diagnostic::new(
         Code::E0001,
         format!("unexpected `{word}`"),
         Span { end: span.start + word.len() as u32, ..span },
     )
     .at("one name belongs between `for` and `in`")
-    .help(format!("write `for {name} in list {{ … }}`"))
-    .fix(span, "")
+    .help(format!("write `for {name} in list {{ … }}`"));
+    // Of two names either may be used in the body.
+    match word == name || matches!(word, "each" | "every" | "all" | "var" | "let" | "const" | "mut" | "int") {
+        true => diagnostic.fix(span, ""),
+        false => diagnostic,
+    }
 }
 
 /// `for i in x: {`
 pub(in crate::syntax) fn before_block(token: &str, span: Span) -> Diagnostic {
-    unexpected(token, span).at("the body should begin here").help("leave it out: `{` follows at once")
+    unexpected(token, span).at("the body should begin here").help(match token {
+        ":" | "do" | "then" | "begin" | ")" => "leave it out: `{` follows at once",
+        "step" | "by" => "a range goes in steps of 1: multiply, as `2 * i` in `for i in 0 to 5 { … }`",
+        _ => "`{` follows the head at once, in which an operator may be missing",
+    })
 }
 
 /// `elif`, `elseif`
