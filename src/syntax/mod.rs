@@ -263,6 +263,16 @@ fn strays(strays: &[cut::Stray], sink: &mut errors::Sink) {
     }
 }
 
+/// What a word before a kind stands for that other languages have there: a mark, or nothing, as in `new sphere { … }`.
+pub(crate) fn mark_of(word: &str) -> Option<&'static str> {
+    match word {
+        "new" | "make" | "create" | "add" | "draw" => Some(""),
+        "off" | "hide" | "hidden" | "disable" | "disabled" | "skip" => Some("@off "),
+        "solo" | "only" => Some("@solo "),
+        _ => None,
+    }
+}
+
 /// Reads a text that is one expression, such as a default value or a setting from the command line.
 pub fn parse_expression(source: SourceId, text: &str) -> (ast::Expr, Vec<Diagnostic>) {
     let Limits { source: longest, depth } = Limits::default();

@@ -8,6 +8,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::schema::{self, Category, FieldType, familiar};
 use crate::span::Span;
 use crate::syntax::ast::{Name, Path};
+use crate::syntax::mark_of;
 use crate::units;
 
 /// An unknown name as a value. `setting` is whether it stands in a `--set`.
@@ -105,22 +106,15 @@ pub(in crate::check) fn declared_inside(diagnostic: &mut Diagnostic, name: &str,
 
 /// `new sphere { … }`, `off sphere { … }`: a word before a kind that says elsewhere what is to become of the thing.
 pub(in crate::check) fn before_kind(word: &Name, kind: &Name) -> Option<Diagnostic> {
+    let mark = mark_of(&word.text)?;
     let diagnostic = Diagnostic::new(Code::E0101, format!("unknown kind `{}`", word.text), word.span)
         .at("no word stands before a kind");
-    let mark = match word.text.as_str() {
-        "new" | "make" | "create" | "add" | "draw" => {
-            let help = format!("leave it out: a thing begins with its kind: `{} {{ … }}`", kind.text);
-            return Some(diagnostic.help(help).fix(Span { end: kind.span.start, ..word.span }, ""));
-        }
-        "off" | "hide" | "hidden" | "disable" | "disabled" | "skip" => "@off",
-        "solo" | "only" => "@solo",
-        _ => return None,
-    };
-    Some(
-        diagnostic
-            .help(format!("a mark begins with `@`: `{mark} {} {{ … }}`", kind.text))
-            .fix(word.span, mark),
-    )
+    let kind_name = &kind.text;
+    let diagnostic = diagnostic.help(match mark {
+        "" => format!("leave it out: a thing begins with its kind: `{kind_name} {{ … }}`"),
+        _ => format!("a mark begins with `@`: `{mark}{kind_name} {{ … }}`"),
+    });
+    Some(diagnostic.fix(Span { end: kind.span.start, ..word.span }, mark))
 }
 
 /// `Math.sqrt(4)`: a built-in function of something that there is not.

@@ -5,7 +5,7 @@ use super::{shown, unexpected};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::span::Span;
 use crate::syntax::ast::Name;
-use crate::syntax::{is_name, is_word};
+use crate::syntax::{is_name, is_word, mark_of};
 use crate::units;
 
 /// What begins a statement elsewhere, and how that is written here.
@@ -173,19 +173,9 @@ pub(in crate::syntax) fn kindless_field(field: &str, open: Span) -> Option<Diagn
     })
 }
 
-/// What stands before a kind elsewhere and says nothing here, or the mark that is meant.
-fn before_kind(word: &str) -> Option<&'static str> {
-    match word {
-        "new" | "make" | "create" | "add" | "draw" => Some(""),
-        "off" | "hide" | "hidden" | "disable" | "disabled" | "skip" => Some("@off "),
-        "solo" | "only" => Some("@solo "),
-        _ => None,
-    }
-}
-
 /// `new sphere ball { … }`, `off sphere ball { … }`, of which the kind and the name are given.
 pub(in crate::syntax) fn word_before_thing(word: &Name, kind: &str, thing: Span) -> Option<Diagnostic> {
-    let mark = before_kind(&word.text)?;
+    let mark = mark_of(&word.text)?;
     let diagnostic = unexpected(&word.text, word.span).at("no word stands before a kind");
     let diagnostic = diagnostic.help(match mark {
         "" => format!("leave it out: a thing begins with its kind: `{kind} {{ … }}`"),
@@ -200,7 +190,7 @@ pub(in crate::syntax) fn two_kinds(word: &str, kind: &str, first: Span, second: 
         unexpected(kind, second).at("a value stands before this already").label(first, "this word");
     let leave_out =
         (format!("leave `{word}` out"), vec![(Span { end: second.start, ..first }, String::new())]);
-    if before_kind(word).is_some() {
+    if mark_of(word).is_some() {
         let help = format!("leave `{word}` out: a value begins with its kind: `{kind} {{ … }}`");
         return diagnostic.help(help).offer(leave_out.0, leave_out.1);
     }
