@@ -39,7 +39,7 @@ static bool is_digit(int32_t c) { return c >= '0' && c <= '9'; }
 
 // Letters beyond ASCII roughly: no unit has one, so all that depends on it is where an unknown unit ends.
 static bool is_letter(int32_t c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == 0xB5 ||
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == 0xAA || c == 0xB5 || c == 0xBA ||
          (c >= 0xC0 && c < 0x2000 && c != 0xD7 && c != 0xF7) || (c >= 0x3040 && c < 0xD800);
 }
 
