@@ -3,7 +3,7 @@
 use super::ast::{Entry, ExprKind, Keyword, Name, StatementKind};
 use super::build::{Builder, Node, is_reserved};
 use super::slips::{is_placement, value_of};
-use super::{errors, is_name, leading};
+use super::{BLANKS, errors, is_name, leading};
 use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 
@@ -66,6 +66,20 @@ impl Builder<'_> {
             }
             _ => None,
         }
+    }
+
+    /// `material: shiny metal { … }`, `let ball = new sphere { … }`: whether the value is a word before the kind.
+    pub(super) fn word_before_kind(&self, pair: &Node, before: Option<&Entry>) -> bool {
+        let Some(value) = before.and_then(value_of) else { return false };
+        let ExprKind::Name(word) = &value.kind else { return false };
+        let rest = self.after(pair.as_span().start()).trim_start_matches(BLANKS);
+        let kind = leading(rest, ".");
+        if !rest[kind.len()..].trim_start_matches(BLANKS).starts_with('{') || !kind.split('.').all(is_name) {
+            return false;
+        }
+        let start = self.text_len() - rest.len();
+        self.report(errors::two_kinds(word, kind, value.span, self.at(start, start + kind.len())));
+        true
     }
 
     /// `1 meter`: whether that is the slip.

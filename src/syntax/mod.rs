@@ -273,6 +273,16 @@ pub(crate) fn mark_of(word: &str) -> Option<&'static str> {
     }
 }
 
+/// Says of such a word what is written in its place before a thing of a kind, which begins at `thing`, and mends it.
+pub(crate) fn with_mark(slip: Diagnostic, word: &ast::Name, kind: &str, thing: Span) -> Option<Diagnostic> {
+    let mark = mark_of(&word.text)?;
+    let slip = slip.at("no word stands before a kind").help(match mark {
+        "" => format!("leave it out: a thing begins with its kind: `{kind} {{ … }}`"),
+        _ => format!("a mark begins with `@`: `{mark}{kind} {{ … }}`"),
+    });
+    Some(slip.fix(Span { end: thing.start, ..word.span }, mark))
+}
+
 /// Reads a text that is one expression, such as a default value or a setting from the command line.
 pub fn parse_expression(source: SourceId, text: &str) -> (ast::Expr, Vec<Diagnostic>) {
     let Limits { source: longest, depth } = Limits::default();

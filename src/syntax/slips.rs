@@ -467,20 +467,6 @@ impl<'t> Builder<'t> {
         self.report(if by_itself { slip } else { slip.ask("add a comma") });
     }
 
-    /// `material: shiny metal { … }`, `let ball = new sphere { … }`: whether the value is a word before the kind.
-    pub(super) fn word_before_kind(&self, pair: &Node, before: Option<&Entry>) -> bool {
-        let Some(value) = before.and_then(value_of) else { return false };
-        let ExprKind::Name(word) = &value.kind else { return false };
-        let rest = self.after(pair.as_span().start()).trim_start_matches(BLANKS);
-        let kind = leading(rest, ".");
-        if !rest[kind.len()..].trim_start_matches(BLANKS).starts_with('{') || !kind.split('.').all(is_name) {
-            return false;
-        }
-        let start = self.text_len() - rest.len();
-        self.report(errors::two_kinds(word, kind, value.span, self.at(start, start + kind.len())));
-        true
-    }
-
     pub(super) fn stray(&self, pair: &Node) {
         let span = self.span(pair);
         match pair.as_str() {

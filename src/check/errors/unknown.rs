@@ -8,7 +8,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::schema::{self, Category, FieldType, familiar};
 use crate::span::Span;
 use crate::syntax::ast::{Name, Path};
-use crate::syntax::mark_of;
+use crate::syntax::with_mark;
 use crate::units;
 
 /// An unknown name as a value. `setting` is whether it stands in a `--set`.
@@ -106,15 +106,8 @@ pub(in crate::check) fn declared_inside(diagnostic: &mut Diagnostic, name: &str,
 
 /// `new sphere { … }`, `off sphere { … }`: a word before a kind that says elsewhere what is to become of the thing.
 pub(in crate::check) fn before_kind(word: &Name, kind: &Name) -> Option<Diagnostic> {
-    let mark = mark_of(&word.text)?;
-    let diagnostic = Diagnostic::new(Code::E0101, format!("unknown kind `{}`", word.text), word.span)
-        .at("no word stands before a kind");
-    let kind_name = &kind.text;
-    let diagnostic = diagnostic.help(match mark {
-        "" => format!("leave it out: a thing begins with its kind: `{kind_name} {{ … }}`"),
-        _ => format!("a mark begins with `@`: `{mark}{kind_name} {{ … }}`"),
-    });
-    Some(diagnostic.fix(Span { end: kind.span.start, ..word.span }, mark))
+    let slip = Diagnostic::new(Code::E0101, format!("unknown kind `{}`", word.text), word.span);
+    with_mark(slip, word, &kind.text, kind.span)
 }
 
 /// `Math.sqrt(4)`: a built-in function of something that there is not.

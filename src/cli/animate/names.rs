@@ -187,9 +187,9 @@ impl Pattern {
         }
     }
 
-    /// Where a frame is kept that goes into a film, in the folder for that.
-    pub fn kept(folder: &Path) -> Option<Pattern> {
-        Some(Pattern { before: format!("{}/", folder.to_str()?), width: 6, after: ".exr".into() })
+    /// Where the frames of a film are kept, in a folder beside it.
+    pub fn kept(film: &str) -> Pattern {
+        Pattern { before: format!("{film}.frames/"), width: 6, after: ".exr".into() }
     }
 
     /// The same with something behind the name.

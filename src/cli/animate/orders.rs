@@ -31,8 +31,8 @@ pub struct Orders {
     pub films: Vec<(PathBuf, Form)>,
     /// Pictures a frame.
     each: Vec<Pattern>,
-    /// The folder in which frames are kept that no picture holds.
-    kept: Option<PathBuf>,
+    /// Where frames are kept that no picture holds.
+    kept: Option<Pattern>,
 }
 
 impl Orders {
@@ -114,8 +114,7 @@ impl Orders {
 
     /// The names of the pictures of frames, where they are to be seen or are kept.
     fn pictures(&self) -> impl Iterator<Item = Pattern> {
-        let kept = self.kept.iter().filter_map(|folder| Pattern::kept(folder));
-        self.each.iter().cloned().chain(kept)
+        self.each.iter().chain(&self.kept).cloned()
     }
 
     /// The names of all that is written of frames: pictures, and where they are kept, their records and checkpoints.
@@ -155,8 +154,8 @@ impl Orders {
     pub fn targets(&self, number: u32) -> Result<Vec<Target>, Problem> {
         let mut targets: Vec<Target> =
             self.each.iter().map(|pattern| pattern.target(number)).collect::<Result<_, _>>()?;
-        if let Some(folder) = &self.kept {
-            targets.push(Target { path: folder.join(format!("{number:06}.exr")), format: Format::Exr });
+        if let Some(kept) = &self.kept {
+            targets.push(kept.target(number)?);
         }
         Ok(targets)
     }
@@ -182,7 +181,8 @@ impl Orders {
 
     /// Makes the folder of frames that are kept, if there is one.
     pub fn make_folder(&self) -> Result<(), Problem> {
-        let Some(folder) = &self.kept else { return Ok(()) };
+        let first = self.kept.as_ref().map(|kept| kept.path(1));
+        let Some(folder) = first.as_deref().and_then(Path::parent) else { return Ok(()) };
         fs::create_dir_all(folder).map_err(|error| {
             Problem::new(format!("cannot make the folder `{}`: {}", folder.display(), plain(&error)))
         })
@@ -211,7 +211,7 @@ impl Orders {
     }
 
     /// Where frames are kept, if they are, and no EXR holds them.
-    fn kept_frames(&self, arguments: &Build) -> Result<Option<PathBuf>, Problem> {
+    fn kept_frames(&self, arguments: &Build) -> Result<Option<Pattern>, Problem> {
         let held = self.targets(1)?.iter().any(|target| target.format == Format::Exr);
         let Some((film, _)) = self.films.first().filter(|_| arguments.keeping.keeps() && !held) else {
             return Ok(None);
@@ -220,9 +220,12 @@ impl Orders {
             let problem = Problem::new("a film on standard output has no name to keep its frames beside");
             return Err(problem.help("write it to a file, or keep them: `-o frame.{04}.exr`"));
         }
-        let mut name = film.clone().into_os_string();
-        name.push(".frames");
-        Ok(Some(name.into()))
+        let Some(name) = film.to_str() else {
+            let problem =
+                format!("`{}` is not UTF-8, so its frames cannot be kept beside it", film.display());
+            return Err(Problem::new(problem).help("give the film another name"));
+        };
+        Ok(Some(Pattern::kept(name)))
     }
 }
 

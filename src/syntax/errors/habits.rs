@@ -5,7 +5,7 @@ use super::{shown, unexpected};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::span::Span;
 use crate::syntax::ast::Name;
-use crate::syntax::{is_name, is_word, mark_of};
+use crate::syntax::{is_name, is_word, mark_of, with_mark};
 use crate::units;
 
 /// What begins a statement elsewhere, and how that is written here.
@@ -175,13 +175,7 @@ pub(in crate::syntax) fn kindless_field(field: &str, open: Span) -> Option<Diagn
 
 /// `new sphere ball { … }`, `off sphere ball { … }`, of which the kind and the name are given.
 pub(in crate::syntax) fn word_before_thing(word: &Name, kind: &str, thing: Span) -> Option<Diagnostic> {
-    let mark = mark_of(&word.text)?;
-    let diagnostic = unexpected(&word.text, word.span).at("no word stands before a kind");
-    let diagnostic = diagnostic.help(match mark {
-        "" => format!("leave it out: a thing begins with its kind: `{kind} {{ … }}`"),
-        _ => format!("a mark begins with `@`: `{mark}{kind} {{ … }}`"),
-    });
-    Some(diagnostic.fix(Span { end: thing.start, ..word.span }, mark))
+    with_mark(unexpected(&word.text, word.span), word, kind, thing)
 }
 
 /// `material: shiny metal { … }`, `let ball = new sphere { … }`
